@@ -14,13 +14,15 @@ from page_study import HOSTILE
 
 from fractalcontact.cards import page
 from fractalcontact.cards.card import _by_source, geometry_of, is_synthetic
-from fractalcontact.cards.entries import entries, entry_of, row_at
+from fractalcontact.cards.entries import entries, entry_of, number, row_at
 from fractalcontact.cards.methods import _laws
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.labels import printable
 from fractalcontact.core.subject import Subject
+from fractalcontact.report.published import Number, Row
 from fractalcontact.study.atlas import read_atlas
 
 NAMES = ("flat.1", "pair")
@@ -255,6 +257,15 @@ def test_a_row_of_an_entry_is_that_of_the_pressure_itself():
     assert row_at(entry, 5.0)["value"] == 3
     assert row_at(entry, 2.0) == {"missing": "not solved there"}
     assert row_at({"missing": "it does not slide"}, 2.0) == {"missing": "it does not slide"}
+
+
+def test_the_misfit_of_a_law_is_noted_where_its_number_is_determined():
+    keys = {"all": True, "misfit": "closure/misfit", "range": ("closure/a", "closure/b")}
+    row = Row("k", "k", "closure/k", "mm", **keys)
+    subject = Subject({"closure": xr.Dataset({"misfit": 0.021})}, {})
+    known, wide = Estimate(1.0, 0.9, 1.1), Estimate(1.0, 0.1, 9.0, reason="too wide")
+    assert number(row, subject, Number({}, known))["note"] == "misses the curve by 2.1 %"
+    assert number(row, subject, Number({}, wide, determined=False))["note"] == "too wide"
 
 
 def test_two_rules_for_the_strength_have_a_range_in_the_first_column():

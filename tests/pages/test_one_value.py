@@ -157,6 +157,9 @@ def of_explorer(folder, subject):
             return np.nan
         return values[entry["start"] + index_of(key, load)]
 
+    # Where nothing slides there is no dilatancy, and no error of it.
+    slides = "total/dilatancy/elastic_dilatancy" in states["arrays"]
+    assert slides == (subject.direction != "none")
     solved = subject.states("closure")["solved"].values
     for row in shown_in("explorer"):
         for load, number in enumerate(read(row, subject)):

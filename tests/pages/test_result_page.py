@@ -30,7 +30,7 @@ from fractalcontact.pages import first_screen, result_page
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.first_screen import block_of, quoted_methods
-from fractalcontact.pages.lights import lights_of, validity_at
+from fractalcontact.pages.lights import Light, _finer, lights_of, trust_of, validity_at
 from fractalcontact.pages.matrix import (
     counted,
     matrix_of,
@@ -232,6 +232,12 @@ def test_a_light_that_is_not_good_says_what_would_help(atlas):
     (nodes,) = [one for one in lights_of(subject) if one.key == "nodes"]
     force = with_unit(2 * float(subject.reported.force), "N")
     assert nodes.help == f"a finer scan, or heavier loads (about {force})"
+
+
+def test_the_grid_asks_for_the_spacing_that_its_order_of_convergence_gives():
+    subject = {"specimens": xr.Dataset(attrs={"spacing_x": 0.4})}
+    assert _finer(subject, 4.0, 2.0) == f"a spacing of {with_unit(0.2, 'mm')} or finer"
+    assert _finer(subject, 4.0, np.nan) == "a finer scan"
 
 
 def test_lights_follow_what_the_stages_say(atlas):
@@ -515,6 +521,24 @@ def test_the_first_screen_says_what_no_interval_holds(facts_with):
 
 
 ANY_AMOUNT = "other windows of this joint may differ by any amount"
+
+
+def test_closure_counts_from_first_touch_where_none_counts_from_the_seat(facts_with):
+    touch, seat = of(0.5), {"seating_pressure": of(2.0)}
+    for seated in (of(0.0), of(np.nan, missing="below the seat")):
+        fact = facts_with(seated_closure=seated, interface_closure=touch, **seat)[1]
+        assert (fact.words, fact.notes[-1]) == ("0.5 mm", "counted from first touch")
+    fact = facts_with(seated_closure=of(0.25), interface_closure=touch, **seat)[1]
+    assert (fact.words, fact.notes[-1]) == ("0.25 mm", "counted from 2 MPa")
+
+
+def test_the_model_s_reason_is_the_first_of_those_that_limit_the_trust():
+    scan = Light("scan", "Scan", "poor", "noise", "a finer scan")
+    model = Light("model", "Validity of the model", "poor", "steep faces", "lighter loads")
+    trust = trust_of([scan, model])
+    assert trust.reason == "Validity of the model: steep faces. Also poor: scan"
+    assert trust.help == "lighter loads (model); a finer scan (scan)"
+    assert trust_of([scan]).reason == "Scan: noise"
 
 
 @pytest.mark.parametrize(
