@@ -116,7 +116,7 @@ def of_curves(folder, subject):
     for row in shown_in("curves"):
         cells = own[own["quantity"] == row.curves]
         points = [
-            (number, enough and (number.determined or not row.dimension))
+            (number, enough and number.determined)
             for number, enough in zip(read(row, subject), resolved, strict=True)
             if number.estimate.known and not (row.zero and number.value == 0)
         ]
@@ -298,7 +298,9 @@ def of_first_screen(folder, subject):
         if number.missing:
             assert words.startswith(f"–||{plain(number.missing)}")
         else:
-            yield row_of(name), number, {"value": number_of(words.partition("|")[0])}, WORDS
+            assert words.startswith("undetermined") != number.determined
+            value = words.removeprefix("undetermined").strip("|").partition("|")[0]
+            yield row_of(name), number, {"value": number_of(value)}, WORDS
 
 
 #: Writers, and how many numbers of a study they show at least.

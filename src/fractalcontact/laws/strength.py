@@ -194,11 +194,6 @@ _QUANTITIES = {
     "peak_offset": ("mm", "offset where it is first reached", *_LOAD),
     "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets", *_LOAD),
     "residual_strength": ("MPa", "mean shear strength beyond half of the largest offset", *_LOAD),
-    "residual_angle": (
-        "degree",
-        "mean dilatancy angle beyond half of the largest offset",
-        *_LOAD,
-    ),
     "residual_n": ("1", "intervals beyond half of the largest offset", *_LOAD),
     "barton_strength": ("MPa", "peak strength by Barton's law", *_LOAD),
     "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law", *_LOAD),
@@ -253,7 +248,7 @@ def _strength(
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
     tau, truncated, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
-    mean_angle = residual(midpoint, angle, largest)
+    residual_strength = residual(midpoint, tau, largest)
     values = {
         "midpoint": midpoint,
         "dilatancy_angle": angle,
@@ -269,9 +264,8 @@ def _strength(
         # The error of the largest of several values is at most the largest of their errors.
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
-        "residual_strength": residual(midpoint, tau, largest),
-        "residual_angle": mean_angle,
-        "residual_n": mean_angle.n,
+        "residual_strength": residual_strength,
+        "residual_n": residual_strength.n,
     }
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
     side = window_sides(specimen)[sliding_axis(str(direction))]

@@ -124,7 +124,7 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
         "ratio": float(state["hydraulic_ratio_along"]),
         "flows": flow > 0,
         "filled": np.isnan(window.value),
-        "reason": str(at["flow_reason_along"].values),
+        "reason": str(state["flow_reason_along"].values),
         "wider": float(states["shifted_ratio"]),
         "window": [window.low, window.high],
         "reload": float(state["branch_transmissivity_along"].sel(branch="reload") / flow),
