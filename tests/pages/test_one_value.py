@@ -208,7 +208,7 @@ class Cells(HTMLParser):
 
 def number_of(words):
     """The number that words such as "−84.1 µm" begin with, in the units of the register."""
-    number, unit = re.match(r"([−\d.e+-]+)(?: ([^\s)]+))?", words).groups()
+    number, unit = re.match(r"([−\d.e+-]+)(?: ([^\s):]+))?", words).groups()
     return float(number.replace("−", "-")) * SIZES.get(unit, 1.0)
 
 

@@ -265,7 +265,7 @@ def _strength(
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
         "residual_strength": residual_strength,
-        "residual_n": residual_strength.n,
+        "residual_n": residual(midpoint, angle, largest).n,
     }
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
     side = window_sides(specimen)[sliding_axis(str(direction))]

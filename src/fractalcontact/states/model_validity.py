@@ -116,11 +116,8 @@ def elastic_model_validity(
         judgements = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-        degrees = round(np.degrees(np.arctan(rms_slope)))
         size = "small" if by_slope == GOOD else "too steep"
-        judgements.append(
-            (by_slope, SLOPE, f"rms slope {rms_slope:.3g} ({degrees:.0f} degrees), {size}")
-        )
+        judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
     judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
     verdict, by, _ = judgements[0]
     # A load far below the largest that the window carries is no reason for a verdict.

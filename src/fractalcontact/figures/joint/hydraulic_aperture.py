@@ -131,7 +131,6 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
         "grid": float(state["transmissivity_grid_error_along"]) / flow,
-        "closing": float(state["transmissivity_separation_error_along"]) / flow,
         "walls": int((offsets == 0).sum()),
         "offsets": offsets.size,
         "way": "the sliding" if slides(subject.settings["opposite"]) else "x",
