@@ -509,7 +509,7 @@ def test_the_first_screen_says_what_no_interval_holds(facts_with):
         "1.11 if contacts are 3 times as hard",
     ]
     facts = facts_with(
-        contact_fraction=of(125.0 / 150.0),
+        area_share=of(125.0 / 150.0),
         stiffness_change=of(-0.086),
         hydraulic_aperture=of(0.5),
         gap_slope=of(1.3),
@@ -520,7 +520,7 @@ def test_the_first_screen_says_what_no_interval_holds(facts_with):
     assert facts[3].notes[-1] == "all contacts crush: pressure over hardness, whatever the scan"
 
 
-ANY_AMOUNT = "other windows of this joint may differ by any amount"
+WHOLE = "± 3.2 for the whole joint: more than the number itself"
 
 
 def test_closure_counts_from_first_touch_where_none_counts_from_the_seat(facts_with):
@@ -545,8 +545,8 @@ def test_the_model_s_reason_is_the_first_of_those_that_limit_the_trust():
     ("half", "synthetic", "words"),
     [
         (0.25, False, "± 0.25 for the whole joint"),
-        (3.2, False, f"{ANY_AMOUNT} (± 3.2); 'twins: 20' narrows this"),
-        (3.2, True, f"{ANY_AMOUNT} (± 3.2)"),
+        (3.2, False, f"{WHOLE}; 'twins: 20' estimates it from the spectrum"),
+        (3.2, True, WHOLE),
     ],
 )
 def test_an_error_larger_than_its_number_leaves_it_unknown(facts_with, half, synthetic, words):

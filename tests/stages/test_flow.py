@@ -13,7 +13,7 @@ from unchecked_settings import resolve_unchecked
 
 from fractalcontact.flow.aperture import MAX_CRUSHED
 from fractalcontact.flow.cubic_law import plane_flow, window_interval
-from fractalcontact.stages.flow import SHIFT, _numbers
+from fractalcontact.stages.flow import SHIFT, _numbers, _path_pressures, _shifted_ratio
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -123,6 +123,21 @@ def test_an_elastic_joint_crushes_nothing(sheared):
     assert (sheared["flow"]["crushed_fraction"] == 0).all()
 
 
+def test_a_path_that_is_open_where_no_transmissivity_is_stated_is_open():
+    pressure, critical = np.array([1.0, 5.0, 25.0, 50.0]), np.array([0.3, 0.2, 0.1, 0.0])
+    flows = np.array([1e-3, np.nan, np.nan, 0.0])
+    assert _path_pressures(pressure, flows, critical) == (25.0, 50.0)
+
+
+def test_the_ratio_of_shifted_faces_needs_a_transmissivity_that_is_stated():
+    plate = np.full((8, 8), 0.1)
+    assert _shifted_ratio(plate, (0.1, 0.1), "x") == pytest.approx(8.0)
+    pinched = plate.copy()
+    pinched[:, 4] = 0.001
+    assert np.isnan(_shifted_ratio(pinched, (0.1, 0.1), "x"))
+    assert np.isnan(_shifted_ratio(0 * plate, (0.1, 0.1), "x"))
+
+
 @pytest.mark.parametrize(("crushed", "states_one"), [(0.99, True), (1.01, False)])
 def test_no_transmissivity_is_stated_where_crushed_rock_may_fill_the_gap(crushed, states_one):
     gap = np.full((8, 8), 0.1)
@@ -148,19 +163,20 @@ def test_no_path_is_zero_however_much_is_crushed():
     assert found["transmissivity"].value == 0
 
 
-def test_the_interval_holds_the_error_of_the_mean_gap_or_says_that_it_does_not(sheared):
+def test_the_interval_holds_the_error_of_the_mean_gap_or_there_is_none(sheared):
     flow, budget = sheared["flow"], sheared["error_budget"]
     gap, load = gap_under_the_reference_load(sheared)
     mean = float(sheared["closure"]["mean_gap"].values.ravel()[load])
     error = float(budget["mean_gap_total_of_population"][load]) / mean
     whole = float(flow["transmissivity_along"][load])
-    known = window_interval(gap, (0.15, 0.1), "y", whole, np.nan_to_num(error))
-    assert float(flow["transmissivity_along_high"][load]) == pytest.approx(known.high, rel=1e-3)
+    high = window_interval(gap, (0.15, 0.1), "y", whole, error).high if error <= 1 else np.nan
+    stated = float(flow["transmissivity_along_high"][load])
+    assert stated == pytest.approx(high, rel=1e-3, nan_ok=True)
     for unknown in (np.nan, 1.5):
         without = _numbers(gap, (0.15, 0.1), "y", 0.0, unknown)
-        assert "leaves out the error of the mean gap" in without["flow_reason"]
-        quarters = window_interval(gap, (0.15, 0.1), "y", whole)
-        assert without["transmissivity"].high == pytest.approx(quarters.high, rel=1e-3)
+        assert "no interval" in without["flow_reason"]
+        assert without["transmissivity"].value == pytest.approx(whole, rel=1e-3)
+        assert np.isnan(without["transmissivity"].ends[1:]).all()
     assert _numbers(gap, (0.15, 0.1), "y", 0.0, 0.1)["flow_reason"] == ""
 
 

@@ -173,8 +173,11 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     of_surface: tuple[str, ...] = OF_SURFACE
     if "scan" in errors:
-        # Of Delta_sigma no other reading is known.
-        total, of_surface = np.hypot(total, np.nan_to_num(errors["scan"])), (*OF_SURFACE, "scan")
+        # No other reading of Delta_sigma is known. A quantity that another reading lacks under
+        # some loads has no total there.
+        is_read = np.isfinite(errors["scan"]).any(axis=1, keepdims=True)
+        total = np.hypot(total, np.where(is_read, errors["scan"], 0.0))
+        of_surface = (*OF_SURFACE, "scan")
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
     for members in (TWINS, REALISATIONS):

@@ -1,10 +1,10 @@
 """Transmissivity of a joint by the local cubic law: div(g^3 grad p) = 0 on the open gap.
 
 The aperture stands at the middles of the cells and contact is impermeable. The flow is the mean of
-two. Faces between cells have the harmonic mean of both cubes in one, which errs low, and the
-conductivity of an aperture that is linear between the cells in the other, which errs high. No flow
-leaves the sides of a window (it is not periodic). Zimmerman and Bodvarsson (Transp. Porous Media 23
-(1996) 1) review the law and its limits.
+two. Faces between cells have the harmonic mean of both cubes in one, which mostly errs low,
+and the conductivity of an aperture that is linear between the cells in the other, which errs high.
+No flow leaves the sides of a window (it is not periodic). Zimmerman and Bodvarsson (Transp. Porous
+Media 23 (1996) 1) review the law and its limits.
 """
 
 from dataclasses import replace

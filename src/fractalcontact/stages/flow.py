@@ -38,8 +38,8 @@ _MAP = ("flow_y", "flow_x")
 SHIFT = 0.1
 #: Largest error of the mean gap over windows, as a fraction of it, that counts as known.
 _MAX_GAP_ERROR = 1.0
-#: Remark on an interval without it.
-_QUARTERS_ALONE = "the interval leaves out the error of the mean gap over windows, not known here"
+#: Reason of a number without an interval, as the quarters alone would make it far too narrow.
+_GAP_UNKNOWN = "no interval, as the mean gap over windows is not known within itself"
 #: Numbers of each way with an interval, that of the window.
 _WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
 #: Numbers of each way by dimension: unit, long name.
@@ -51,7 +51,7 @@ _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
         "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
         "flow_imbalance": ("1", "bound on the relative error of T by mass balance and closed gaps"),
         "flow_reason": ("1", "why T is zero, missing or not resolved, or what its interval lacks"),
-        "flow_resolved": ("1", "whether both face values agree on T to 30 %"),
+        "flow_resolved": ("1", "false where both face values of T differ by more than 30 %"),
         "hydraulic_ratio": ("1", "hydraulic aperture over the mean gap"),
         "transmissivity_grid_error": (
             "mm3",
@@ -155,7 +155,11 @@ def flow_stages(
     for way, axis in axes.items():
         values |= _over_loads(way, axis, gaps, spacing, states, errors, crushed, reported)
     reference = gaps[reported.reference]
-    values["shifted_ratio"] = _shifted_ratio(reference, spacing, axes[WAYS[0]])
+    values["shifted_ratio"] = (
+        np.nan
+        if crushed_reason(crushed[reported.reference])
+        else _shifted_ratio(reference, spacing, axes[WAYS[0]])
+    )
     loaded = {"mean_gap": states["mean_gap"].values}
     loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
     for prefix, numbers in {
@@ -208,9 +212,10 @@ def _crushed_fractions(composite, space, states, mapped, hardness):
 
 
 def _shifted_ratio(gap, spacing, axis):
-    """T of faces :data:`SHIFT` farther apart over that of the gap; NaN where nothing flows."""
-    flow, apart = (flow_of(one, spacing, axis).transmissivity for one in (gap, gap + SHIFT))
-    return apart / flow if flow > 0 else np.nan
+    """T of faces :data:`SHIFT` farther apart over that of the gap; NaN where no T is stated."""
+    flow, apart = (flow_of(apertures, spacing, axis) for apertures in (gap, gap + SHIFT))
+    stated = flow.transmissivity > 0 and flow.resolved
+    return apart.transmissivity / flow.transmissivity if stated else np.nan
 
 
 def _over_loads(way, axis, gaps, spacing, states, errors, crushed, reported):
@@ -239,7 +244,9 @@ def _over_loads(way, axis, gaps, spacing, states, errors, crushed, reported):
     flow = Estimate.stack(values.pop("transmissivity"))
     hydraulic = flow.mapped(hydraulic_aperture)
     mean = states["mean_gap"].where(states["mean_gap"] > 0).values
-    opened, closed = _percolation_pressures(states["nominal_pressure"].values, flow.value)
+    opened, closed = _path_pressures(
+        states["nominal_pressure"].values, flow.value, values["critical_gap"]
+    )
     values |= {
         "hydraulic_ratio": hydraulic.value / mean,
         "transmissivity_separation_error": _separation_error(
@@ -261,18 +268,16 @@ def _numbers(gap, spacing, axis, crushed, gap_error):
     """Numbers of the flow through a gap.
 
     The errors of T take five more flows, of parts of it; ``gap_error``, of the mean gap over
-    windows as a fraction of it, is None where they are not wanted. One larger than the gap says
-    nothing of it: then the interval is that of the quarters, and the remark says so.
+    windows as a fraction of it, is None where they are not wanted. Where it is not known, or larger
+    than the gap, T has no interval: that of the quarters alone would be far too narrow.
     """
     flow = flow_of(gap, spacing, axis)
     whole, reason, off_grid = Estimate(flow.transmissivity), flow.reason, np.nan
     if gap_error is not None:
-        known = gap_error <= _MAX_GAP_ERROR
-        whole = window_interval(
-            gap, spacing, axis, flow.transmissivity, gap_error if known else 0.0
-        )
-        if whole.known and np.isfinite(whole.low) and not known:
-            reason = reason or _QUARTERS_ALONE
+        if gap_error <= _MAX_GAP_ERROR:
+            whole = window_interval(gap, spacing, axis, flow.transmissivity, gap_error)
+        else:
+            reason = reason or _GAP_UNKNOWN
         off_grid = grid_error(gap, spacing, axis, flow)
     unknown = crushed_reason(crushed) or ("" if flow.resolved else flow.reason)
     if unknown and flow.transmissivity > 0:
@@ -290,9 +295,12 @@ def _numbers(gap, spacing, axis, crushed, gap_error):
     }
 
 
-def _percolation_pressures(pressure, flows):
-    """Largest pressure with a path through the gap and smallest without one, MPa; NaN for none."""
-    opened, closed = pressure[flows > 0], pressure[flows == 0]
+def _path_pressures(pressure, flows, critical):
+    """Largest pressure with a path through the gap and smallest without one, MPa; NaN for none.
+
+    A path with a critical gap is open where no T is stated, too.
+    """
+    opened, closed = pressure[(flows > 0) | (critical > 0)], pressure[flows == 0]
     return np.append(np.nan, opened)[-1], np.append(closed, np.nan)[0]
 
 
