@@ -138,7 +138,7 @@ def _mean_slope(task: SizeTask) -> float:
     return band_slope((task.size, task.size), SPACING, task.hurst, **_class_of(task))
 
 
-#: Streams of seeds: windows are cut from the surfaces of arm S3.
+#: Stream of seeds of each arm. W shares that of S3: its windows are cut from the same surfaces.
 _STREAMS = {"R": 0, "S1": 1, "S2": 2, "S3": 3, "W": 3, "G": 4}
 
 

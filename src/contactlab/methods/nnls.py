@@ -15,7 +15,7 @@ from roughcontact.contact.state import ContactState
 from .common import ContactProblem, influence_matrix
 from .method import Method
 
-# Gradient projections for the warm start; each one application of the operator.
+# Gradient projections for the warm start; each applies the operator once.
 PROJECTIONS = 100
 # Most sets solved for: theory says only that they are finite in number.
 MAX_SETS = 5000

@@ -16,7 +16,7 @@ _AGAINST_PRESSURE = {
     "Shear strength": ("strength",),
 }
 _UNITS = {"1": "%", "degree": "°"}
-#: Head of the column of the range over the rules for the strength.
+#: Column head: range of the strength over all rules.
 _RULES_HEAD = "peak τ, range of all rules"
 
 

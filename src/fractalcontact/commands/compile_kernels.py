@@ -18,7 +18,7 @@ from ..roughness.dimension import surface_dimension
 from ..states.state_scalars import aperture
 from ..surface.synthesis import self_affine
 
-#: Nodes per side from which the solver uses all of its parts.
+#: Nodes per side of a window whose solves compile the kernels of small windows.
 SIDE = 200
 #: Nodes per side from which it also uses the parts for light contact.
 LARGE_SIDE = 512

@@ -136,7 +136,10 @@ def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[s
 
 
 def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str, Any]) -> Face:
-    """File as its draft says; keys that are not filled in take the values of `_SHOWN`."""
+    """File as its draft says.
+
+    Blank keys take the values of `_SHOWN` where it has one that fits the layout.
+    """
     blanks = [key for key, value in draft.items() if value is None]
     filled = {key: value for key, value in draft.items() if value is not None}
     options = {**of_face(stated, face), **filled}

@@ -47,8 +47,8 @@ LIGHT_LOAD = 0.02
 #: drawn from an exact law (beta 0.4 to 2, 60 clusters or more) lie within it in 95 of 100 draws.
 LARGEST_DISTANCE = 0.85
 
-#: Tilt of a scan, degrees, at which subtracting the mean plane (a shear) departs from turning the
-#: specimen by 0.4 %.
+#: Tilt of a scan, degrees, at which subtracting the mean plane (a shear) departs by 0.4 % from a
+#: rotation.
 STEEP_TILT = 5.0
 
 #: Largest change of a level dilatancy over the second half of the offsets, over the mean there.

@@ -1,4 +1,4 @@
-"""Numbers, intervals, units, percentages and ranges as text: no other module formats numbers.
+"""Numbers, intervals, units, percentages and ranges as text for pages, cards, captions and tables.
 
 Pages and cards have the typographic minus sign; captions, tables, messages and verdicts, which are
 searched and parsed, the hyphen.

@@ -22,8 +22,8 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
 _QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
 _LONGEST = 60  # characters
-#: Units of length of instruments, by symbol as written and by name in any case and number. The
-#: library of units has points, picas and pixels as parts of an inch, too, and light years.
+#: Units of length of instruments, by symbol as written and by name in any case and number. They
+#: are listed because the library of units also has points, picas, pixels and light years.
 _LENGTH_SYMBOLS = {
     **{
         symbol: symbol

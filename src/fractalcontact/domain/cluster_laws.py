@@ -42,8 +42,9 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
     """Sizes of clusters with their power law, and Morisita's index as a power of the offset.
 
     ``domains`` has the numbers of :func:`domain.clusters.cluster_statistics` over (direction,
-    offset, resolution, normal_force), ``nodes`` the nodes in contact in that order; domains of
-    fewer than `RESOLVED_NODES` are not fitted. ``spacing`` is that of the scan, mm.
+    offset, resolution, normal_force), ``nodes`` the nodes in contact in that order. Only
+    Morisita's law leaves out domains of fewer than `RESOLVED_NODES`. ``spacing`` is that of the
+    scan, mm.
     """
     cell = (domains["resolution"] * spacing) ** 2
     area = 2.0 ** domains["octave"] * cell

@@ -161,10 +161,11 @@ def _length(value: Any, where: str) -> float:
 def outline_warning(
     values: np.ndarray, touching: np.ndarray, outline: object, threshold: float = np.inf
 ) -> str:
-    """Warning of contact outside an outline, or of zeros taken for nominal area, or "".
+    """Warning of contact cut off by a disc, or of zeros taken for nominal area; "" if neither.
 
     ``values`` (ny, nx) are those of the file, NaN where nothing was measured; cells outside the
-    outline touch above ``threshold``. Any stated ``outline`` silences the warning of zeros.
+    outline touch above ``threshold``. The warning of contact is for a disc without a stated centre
+    alone. Any stated ``outline`` silences the warning of zeros.
     """
     absent = np.isnan(values)
     empty = ~(touching | absent)

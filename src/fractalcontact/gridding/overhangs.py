@@ -17,8 +17,8 @@ _STEEPEST = np.tan(np.radians(80.0))
 _NOISE = 20.0
 #: This many neighbours make a layer, above a point or at its level; fewer are spikes.
 _FEWEST = 6
-#: The points above lie on all sides if no sector wider than this is free of them. On one side of
-#: a line, at a step or at an upright wall, they leave half a circle free.
+#: The points above lie on all sides if no sector wider than this is free of them. Those beyond a
+#: line, as at a step or an upright wall, leave half a circle free.
 _WIDEST_GAP = np.radians(170.0)
 #: Fewer hidden points than this share change no result: at the steps of a fracture some points look
 #: hidden by chance.

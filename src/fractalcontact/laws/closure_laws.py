@@ -189,7 +189,7 @@ _OF_FIT = {
     "n": ("1", "points fitted"),
     "reason": ("1", "why there is no fit"),
 }
-#: Quantities of both laws of every curve: unit, long name.
+#: Quantities of both laws of every curve and of the choice between them: unit, long name.
 _NAMES = {
     "hyperbola_k_ni": ("MPa/mm", "initial normal stiffness k_ni, extrapolated to zero load"),
     "hyperbola_w_m": ("mm", "largest closure w_m, the asymptote"),

@@ -1,6 +1,6 @@
 """Names of the files of the result page: known to the workflow, which imports nothing heavy."""
 
-#: Pages and tables in the folder of the results of a study.
+#: Pages, tables, their archive and the study, in the folder of the study's results.
 INDEX, EXPLORER = "index.html", "explorer.html"
 SUMMARY, CURVES, STATEMENTS = "summary.csv", "curves.csv", "statements.csv"
 TABLES, CONFIGURATION = "tables.zip", "study.yaml"

@@ -39,7 +39,7 @@ def _no_jrc(subject: Subject) -> str:
     return "" if is_known else "no JRC at the step of its law"
 
 
-#: Reason why a specimen lacks what a quantity needs; empty where it has it.
+#: Functions that say why a specimen lacks what a quantity needs; "" where it has it.
 NEEDS: Mapping[str, Callable[[Subject], str]] = {
     "sliding": _not_sliding,
     "offsets": _too_few_offsets,

@@ -86,7 +86,7 @@ class Hints:
 
 
 def image_hints(values: np.ndarray, mark: float | None = None) -> Hints:
-    """Hints of a matrix of grey levels; cells of a stated mark are missing already."""
+    """Hints on a matrix of grey levels; cells equal to a stated ``mark`` count as missing."""
     hints = Hints(heights=values if mark is None else np.where(values == mark, np.nan, values))
     hints.ask("first_row", "a picture begins at the top, an array saved as one may not")
     return hints

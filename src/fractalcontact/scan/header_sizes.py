@@ -36,8 +36,8 @@ def refuse_other_size(
 
     Three kinds of statement count: a line of up to three whole numbers alone; for a matrix, a line
     of ``nx`` or ``ncols`` with one of ``ny`` or ``nrows``; and for a matrix, two whole numbers in
-    one line or in two that follow each other, as ``DIMENSIONS 70 60 1`` and ``70 x 60``, which are
-    other sides of as many cells. A size that the sidecar confirms rules.
+    one line or in two successive ones (``70 x 60``, ``DIMENSIONS 70 60 1``), if they make as many
+    cells with other sides. A file whose sidecar states ``confirmed`` is not refused here.
     """
     if options.confirmed is None and (other := _other_size(header, shape, options)):
         stated, reason = other

@@ -30,9 +30,9 @@ class Needs:
 def require_stated(
     path: Path, options: ScanOptions, needs: Needs, hints: Callable[[], Hints]
 ) -> None:
-    """Refuse a file whose sidecar lacks a statement that its reading depends on, with a draft.
+    """Refuse a profile, and a file whose sidecar lacks a statement needed to read it.
 
-    ``hints`` is called for the draft only where something is lacking. A profile is refused as well.
+    The error of a lacking statement holds a draft; ``hints`` is called for it only then.
     """
     if options.kind == "profile":
         raise InputError(

@@ -79,7 +79,7 @@ def _columns_in_doubt(
 
 
 def coordinate_columns(table: np.ndarray) -> list[int]:
-    """Two columns whose numbers are the places of a grid, each repeated; [] without."""
+    """Only two columns whose numbers are places of a grid, each repeated; [] if none or several."""
     if len(table) < _MIN_POINTS:
         return []
     counts = [len(np.unique(column[np.isfinite(column)])) for column in table.T]

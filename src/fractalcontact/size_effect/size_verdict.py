@@ -29,7 +29,7 @@ WIDEST_SLOPE = 1.0
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
-#: Reasons of verdicts.
+#: Why a prediction or a slope is not judged or not decided.
 TOO_WIDE = f"the predicted exponent is uncertain by more than {WIDEST_PREDICTION:g}"
 TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
 NOTHING_PREDICTED = "eq. 6 predicts hardly any size effect"

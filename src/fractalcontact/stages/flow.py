@@ -36,7 +36,7 @@ _MAP = ("flow_y", "flow_x")
 
 #: Distance by which faces are moved apart to see what their fit changes, mm.
 SHIFT = 0.1
-#: Largest error of the mean gap over windows, as a fraction of it, that counts as known.
+#: The error of the mean gap over windows counts as known up to this fraction of the gap.
 _MAX_GAP_ERROR = 1.0
 #: Reason of a number without an interval, as the quarters alone would make it far too narrow.
 _GAP_UNKNOWN = "no interval, as the mean gap over windows is not known within itself"
@@ -331,7 +331,7 @@ def _separation_error(gap, flow, total):
 
 
 def _of_branches(composite, space, loading, branches, both, loaded):
-    """Numbers of all branches: on loading as given, else NaN above the largest load."""
+    """Numbers of all branches: as given on loading; on the others NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
     values = {

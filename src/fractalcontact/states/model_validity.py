@@ -18,9 +18,9 @@ from ..core.text import percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_JUDGED, POOR, STRENGTH, USUAL
 
-#: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
-#: up to which they are one in part: chosen bounds, not measured ones. A surface of that rms slope
-#: is at most 4 %, or 25 %, larger than its projection.
+#: Rms slope of the composite topography up to which half-spaces model its faces fairly, and up to
+#: which they do so in part: chosen bounds, not measured ones. A surface of that rms slope is at
+#: most 4 %, or 25 %, larger than its projection.
 SMALL_SLOPE, MODERATE_SLOPE = 0.3, 0.75
 
 #: A contact that all material around it confines yields as a whole at about three times the

@@ -15,8 +15,8 @@ MIN_ORDER, MAX_ORDER = 0.5, 3.0
 #: Fraction of the extrapolation, or of the last change, that is uncertain.
 UNCERTAIN = 0.5
 
-#: Error that changes between spacings may miss, as fractions of the quantity's edge part: with
-#: three spacings and with two.
+#: Error that may not show in the changes between spacings, as fractions of the quantity's edge
+#: part: with three spacings and with two.
 OF_EDGE = {
     "closure": (0.025, 0.01),
     "separation": (0.005, 0.05),

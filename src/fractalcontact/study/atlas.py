@@ -119,7 +119,7 @@ class _DeferredWriter:
         self.pending.append((source, target))
 
     def write(self):
-        """Write all variables."""
+        """Write the variables that `add` kept."""
         for source, target in self.pending:
             target[...] = source
 

@@ -128,7 +128,7 @@ def band_slope(
     side = grid_side(shape)
     q = _wave_numbers(side, spacing)
     density = _band(q, hurst, prefactor, cut_off, roll_off)
-    # The half plane of a real transform: all but its edges stand for two waves.
+    # A real transform keeps half the plane: every wave off its edges stands for two.
     twice = np.full(q.shape[1], 2.0)
     twice[0] = 1.0
     if side % 2 == 0:

@@ -280,7 +280,7 @@ def _bound(case, closure, coarser_closure):
 def _prolonged(case, cells, pressure, nodes):
     """Pressure of some nodes, prolonged from coarse cells as `prolong` does.
 
-    Only the neighbourhood of these cells takes memory.
+    The array spans the window, but only its pages near these cells are written and take memory.
     """
     ny, nx = case.space.shape
     my, mx = (ny + 1) // 2, (nx + 1) // 2

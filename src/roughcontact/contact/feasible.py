@@ -64,7 +64,8 @@ def _scaled_to_force(problem, operator, pressure, displacement):
         return problem.first_touch(), None
     factor, bounds = problem.load / total, problem.bounds
     if (pressure * factor > bounds.upper).any():
-        # The first step gives the force beyond the loaded nodes' bounds to the next nodes.
+        # The pressure is cut at the bounds; the solver's first step gives the force that loaded
+        # nodes cannot carry to other nodes.
         pressure = bounds.clip(pressure)
         _scale_to(problem.load, pressure, *bounds.on(pressure.size))
         return pressure, None

@@ -226,7 +226,10 @@ def _changed(different, before, blocks, shifts, nx):
 
 @njit(cache=True)
 def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected, value):
-    """Mark the blocks, on every level, whose nodes may have other neighbours than ``before``."""
+    """Mark blocks whose nodes may have other neighbours than with the representatives ``before``.
+
+    Blocks of every level are set to ``value``.
+    """
     representative, offsets, widths, _ = blocks
     reach = neighbourhood.size - 1
     k = 0

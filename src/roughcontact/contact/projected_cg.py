@@ -63,9 +63,11 @@ class ProjectedCG:
         self._response: np.ndarray | None = None
 
     def clipped_step(self, start: np.ndarray, bounds: Bounds, total: float | None) -> None:
-        """The whole preconditioned step, clipped so that start + x stays within the bounds.
+        """Set `solution` to the preconditioned step x, clipped to keep start + x within the bounds.
 
-        With a ``total``, start + x has that sum. `apply_step` applies K to the step.
+        With a ``total``, start + x has that sum to within a fraction `TOTAL` of it (in repeated
+        windows `REPEATED_TOTAL`); where a bound is infinite, as far as `CLIPPING_PASSES` allow.
+        `apply_step` applies K to the step.
         """
         if start.shape != self.active.shape:
             raise ValueError(f"start {start.shape}: expected {self.active.shape}")

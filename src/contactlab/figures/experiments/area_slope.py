@@ -55,7 +55,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def _draw_surfaces(axes, chosen):
-    """One line for each surface: corrected areas filled, raw areas open."""
+    """Draw two lines for each surface: kappa of corrected areas filled, of raw areas open."""
     styles = (
         {"color": colour_of(1), "marker": MARKERS[0]},
         {"color": colour_of(2), "marker": MARKERS[1], "mfc": "white", "ls": "--"},

@@ -94,7 +94,7 @@ def _legends(test: xr.Dataset) -> list[list[Artist]]:
     """Columns of the legend: classes, loads, estimators and lines."""
     classes: list[Artist] = []
     for i, hurst in enumerate(test["hurst"].values):
-        # The title has the verdict on eq. 6 if all arms agree.
+        # The legend entry of a class names the verdict on eq. 6 if all arms agree.
         decided = np.unique(test["overall"].sel(hurst=hurst).values)
         words = f": {decided[0]}" if len(decided) == 1 else ""
         label = f"$H$ = {hurst:g}{words}"

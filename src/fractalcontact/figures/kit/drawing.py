@@ -87,7 +87,7 @@ def keep_style(figure: Figure, own: Mapping[str, Any] | None = None) -> None:
 
 @contextlib.contextmanager
 def garbage_collection_paused() -> Iterator[None]:
-    """Garbage collection paused meanwhile.
+    """Pause garbage collection within the block.
 
     A figure is some 100 000 objects that live as long as it does. Collections while it is drawn
     find nothing and take a tenth of the time; the 6 MB of cycles that it leaves wait for the end.

@@ -55,7 +55,10 @@ def _legends(parent: FigureBase | Axes) -> Iterator[Legend]:
 
 
 def _break_panel_titles(figure) -> Iterator[bool]:
-    """Break titles of panels, which have room up to the next title or to the figure's edge."""
+    """Break left-aligned panel titles at the next title or the figure's edge.
+
+    Yields for each title whether it was broken.
+    """
     titles = [
         title
         for axes in figure.axes

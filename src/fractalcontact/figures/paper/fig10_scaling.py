@@ -51,7 +51,7 @@ def _draw_areas(panel, states, by_area, reference):
     for n, i in enumerate(kit.spread_loads(len(forces), _MAX_LOADS, reference)):
         state = states.isel(normal_force=i)
         used = state.isel(resolution=state["area_used"].values)
-        # Later markers are smaller, because low loads may share their few nodes.
+        # Filled markers shrink from load to load: two low loads may touch on the same few nodes.
         style = {"color": _LOAD_COLOURS[n], "marker": kit.MARKERS[n], "linestyle": "none"}
         raw = {"mfc": "none", "mew": 0.6, "markersize": 4}
         hollow = axes.plot(state["spacing"], state["area"], **(style | raw))

@@ -109,14 +109,16 @@ def _square_about_line(piece):
             xx += dx * dx
             zx += dz * dx
             zz += dz * dz
-    # A random walk has n/15 - 4/(15 n): hence the sum over n, not over n - 2 as for noise.
+    # The sum is divided by n: the mean square of a random walk is then n/15 - 4/(15 n). Noise
+    # would need n - 2.
     return max(zz - zx * zx / xx, 0.0) / n
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H that the slope gives.
 
-    The mean square of missing waves lies wholly about a window's plane, that of the surface partly.
+    Missing waves lie wholly about a window's plane, so all of their mean square is lost; of the
+    surface's only a part lies there.
     """
     whole = fit.axis == "both"
     unit = square_about_plane() if whole else square_about_line()

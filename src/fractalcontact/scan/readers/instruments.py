@@ -32,8 +32,8 @@ LATERAL_FAULTS = {
     ),
 }
 #: Formats that state a length, not a spacing, which some programs count from the first point to
-#: the last and others over all cells: MountainsMap writes (n - 1) dx to .bcrf, TrueMap to .tmd,
-#: GelSight writes n dx to .tmd. Like SurfaceTopography and Gwyddion we take n dx.
+#: the last and others over all cells: MountainsMap (.bcrf) and TrueMap (.tmd) write (n - 1) dx,
+#: GelSight (.tmd) writes n dx. Like SurfaceTopography and Gwyddion we take n dx.
 LENGTH_UNCLEAR = ("bcr", "tmd")
 #: Formats whose first row lies at the smallest y, as SurfaceTopography gives them; Gwyddion draws
 #: it at the top, as that of an image.

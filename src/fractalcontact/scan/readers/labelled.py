@@ -51,10 +51,11 @@ class Axis:
 def read_labelled(path: Path, options: ScanOptions) -> RawScan:
     """2-D variable of a netCDF or HDF5 file.
 
-    A variable whose attribute ``units``, and those of the coordinates x and y of its dimensions,
-    are units of length describes itself, and its ``positive: down`` is honoured. Any other is read
-    as its sidecar states. Packing, fill values and valid ranges are decoded (CF conventions); where
-    a variable ``mask`` is not zero, cells are missing (SurfaceTopography's convention).
+    A variable describes itself if its attribute ``units`` and those of its coordinates x and y are
+    units of length; its ``positive: down`` is then honoured. Any other is read as its sidecar
+    states, and so is one whose sidecar states ``layout``, ``axes`` or ``columns``. Packing, fill
+    values and valid ranges are decoded (CF conventions); where a variable ``mask`` is not zero,
+    cells are missing (SurfaceTopography's convention).
     """
     with reading(path, "netCDF or HDF5 file"), open_variables(path) as variables:
         names = table_names(variables)
