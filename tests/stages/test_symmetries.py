@@ -41,6 +41,7 @@ ABSOLUTE = {
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
     *("barton_slope_angle", "peak_over_barton"),
     "value",
+    "shifted_ratio",  # by 0.1 mm
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
     *("reference_pressure", "reference_stiffness"),
     *("reference_stiffness_total", "reference_stiffness_total_of_population"),

@@ -280,7 +280,8 @@ def stages(**changes):
     }
     made["closure"] = _with_coarse_states(made["closure"], values)
     nodes = states("nodes")[1]
-    made["domains"] = made["domains"].assign(localisation(made["domains"], nodes))
+    used, powers = localisation(made["domains"], nodes)
+    made["domains"] = made["domains"].assign({"morisita_used": used} | powers)
     return made
 
 

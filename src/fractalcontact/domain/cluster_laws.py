@@ -52,8 +52,7 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
     counts = domains["cluster_octaves"].transpose(..., "octave").values
     # The index of random nodes is 1 in the mean.
     reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
-    offset, index = domains["offset"], domains["morisita"]
-    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
+    used, powers = localisation(domains, nodes)
     values = {
         "cluster_area": area,
         "clusters_at_least": np.cumsum(counts[..., ::-1], axis=-1)[..., ::-1],
@@ -69,9 +68,18 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
         name: value.transpose(*_TABLE[name][0]).values if hasattr(value, "dims") else value
         for name, value in values.items()
     }
-    used_states = {"offset": offset, "index": index.where(used)}
-    powers = per_curve(used_states, _power_of_offset, _POWERS, along="offset")
     return xr.Dataset(labelled(_TABLE, ordered) | powers)
+
+
+def localisation(domains: xr.Dataset, nodes: np.ndarray) -> tuple[xr.DataArray, dict[str, tuple]]:
+    """States in the fit of Morisita's index I ~ v^x, and ``morisita_exponent`` with its interval.
+
+    The arguments are those of :func:`cluster_laws`; of ``domains`` only ``morisita`` is read.
+    """
+    offset, index = domains["offset"], domains["morisita"]
+    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
+    used_states = {"offset": offset, "index": index.where(used)}
+    return used, per_curve(used_states, _power_of_offset, _POWERS, along="offset")
 
 
 def _law_count(domains, area):
