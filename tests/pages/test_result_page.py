@@ -2,9 +2,11 @@
 
 import inspect
 import json
+import math
 import re
 import shutil
 import zipfile
+from dataclasses import replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
@@ -30,7 +32,14 @@ from fractalcontact.pages import first_screen, result_page
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.first_screen import block_of, quoted_methods
-from fractalcontact.pages.lights import Light, _finer, lights_of, trust_of, validity_at
+from fractalcontact.pages.lights import (
+    Light,
+    _finer,
+    _without_scan,
+    lights_of,
+    trust_of,
+    validity_at,
+)
 from fractalcontact.pages.matrix import (
     counted,
     matrix_of,
@@ -232,6 +241,24 @@ def test_a_light_that_is_not_good_says_what_would_help(atlas):
     (nodes,) = [one for one in lights_of(subject) if one.key == "nodes"]
     force = with_unit(2 * float(subject.reported.force), "N")
     assert nodes.help == f"a finer scan, or heavier loads (about {force})"
+
+
+def test_the_light_of_the_grid_leaves_out_the_error_of_the_scan(atlas):
+    subject = Subject.of(atlas, "pair")
+    seated = subject.states("closure")["seated_closure"].values
+    load = subject.reported.reference
+    assert seated[load] > 0
+    budget = subject["error_budget"]
+    budget = budget.reindex(source=sorted({*budget["source"].values, "scan"}))
+    scan = {"quantity": "separation", "source": "scan"}
+    size = budget.sizes["normal_force"]
+    budget["error"].loc[scan] = np.where(
+        np.arange(size) == load, 0.3, np.where(seated == 0, 0.4, np.nan)
+    )
+    changed = replace(subject, stages={**subject.stages, "error_budget": budget})
+    both = math.hypot(0.2 * seated[load], 0.3, 0.4) / seated[load]
+    assert _without_scan(changed, both) == pytest.approx(0.2)
+    assert _without_scan(changed, 0.0) == 0
 
 
 def test_the_grid_asks_for_the_spacing_that_its_order_of_convergence_gives():

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.text import compact, number, with_unit
@@ -123,7 +125,7 @@ def _grid(subject):
     errors = budget.sel(quantity="separation" if seated else "closure")
     error = float(errors["relative_error"].sel(source="numerical"))
     if seated:
-        error = float(budget["seated_closure_relative"])
+        error = _without_scan(subject, float(budget["seated_closure_relative"]))
     if math.isnan(error):
         why = str(errors["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_JUDGED, why)
@@ -135,6 +137,23 @@ def _grid(subject):
     )
     helps = "" if word == GOOD else _finer(subject, error / asked, float(errors["observed_order"]))
     return Light(key, title, word, reason, helps)
+
+
+def _without_scan(subject, relative):
+    """Relative error of the closure from the seat without the source scan, which no grid changes.
+
+    The closure is a difference of two separations, at the seat and under the reference load.
+    """
+    errors = subject["error_budget"]["error"].sel(quantity="separation")
+    if "scan" not in errors["source"]:
+        return relative
+    seated, scan = (
+        subject.states("closure")["seated_closure"].values,
+        errors.sel(source="scan").values,
+    )
+    load = subject.reported.reference
+    of_scan = np.nan_to_num([scan[load], *scan[seated == 0]]) / seated[load]
+    return math.sqrt(max(relative**2 - (of_scan**2).sum(), 0.0))
 
 
 def _finer(subject, excess, order):

@@ -39,7 +39,7 @@ SHIFT = 0.1
 #: The error of the mean gap over windows counts as known up to this fraction of the gap.
 _MAX_GAP_ERROR = 1.0
 #: Reason of a number without an interval, as the quarters alone would make it far too narrow.
-_GAP_UNKNOWN = "no interval, as the mean gap over windows is not known within itself"
+_GAP_UNKNOWN = "no interval, as the mean gap of other windows may differ by more than its value"
 #: Numbers of each way with an interval, that of the window.
 _WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
 #: Numbers of each way by dimension: unit, long name.
