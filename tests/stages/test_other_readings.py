@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from fractalcontact.stages.specimen import prepare_specimen
+from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.states.scan_spread import OTHER_FACES, READING
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.synthesis import self_affine
@@ -44,7 +44,7 @@ def files(tmp_path_factory):
 
 def specimen_of(files, own=(), **options):
     settings = resolve_settings(STUDY, "joint", dict(own), "tiny")
-    return prepare_specimen(*files, OPTIONS | options, settings, "joint")
+    return specimen_of_files(files, OPTIONS | options, settings, "joint")
 
 
 def heights_of(specimen, **reading):

@@ -7,7 +7,7 @@ from materials import ROCK
 
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.stages.atlas import join_stages
-from fractalcontact.stages.specimen import prepare_specimen
+from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.figure_list import figures_of
 from fractalcontact.study.scan_files import ScanFiles
@@ -41,7 +41,8 @@ def atlas_of_scan(lower, upper, options, folder, settings=(), name="specimen"):
     own = dict(settings)
     scan = ScanFiles(name, lower, upper, None)
     resolved = resolve_settings(SMALL_STUDY, name, own, "small", scan)
-    specimen = prepare_specimen(lower, upper, options, resolved, name)
+    files = [lower] if upper is None else [lower, upper]
+    specimen = specimen_of_files(files, options, resolved, name)
     parts = {
         stage: {name: data}
         for stage, data in stages_of_specimen(specimen, resolved, SOLVER).items()

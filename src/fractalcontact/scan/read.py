@@ -25,7 +25,7 @@ from .options import (
 )
 from .raw import IncompleteSidecar, RawScan
 
-__all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
+__all__ = ["measure", "measure_faces", "read_faces", "read_matrix", "read_scan"]
 
 
 def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
@@ -101,13 +101,24 @@ def read_faces(
                     f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
                 )
         return read_scan(lower_path, options), None
+    lower, upper, given = measure_faces(lower_path, upper_path, options)
+    return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
+
+
+def measure_faces(
+    lower_path: Path | str, upper_path: Path | str, options: Mapping | None = None
+) -> tuple[Measured, Measured, ScanOptions]:
+    """Numbers of both files of a joint in mm, before they are on a grid, and the keys of the pair.
+
+    Options and errors are those of `read_faces`, but for what :func:`gridding.faces.grid_pair`
+    refuses.
+    """
     paths = dict(zip(FACES, (Path(lower_path), Path(upper_path)), strict=True))
     stated = {f: parse_options(of_face(options, f), str(path)) for f, path in paths.items()}
     files = {face: _read(path, stated[face]) for face, path in paths.items()}
     _require_one_layout(files["lower"], files["upper"])
     lower, upper = (in_mm(files[face], stated[face]) for face in FACES)
-    given = stated["lower"]
-    return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
+    return lower, upper, stated["lower"]
 
 
 def read_matrix(

@@ -5,10 +5,8 @@ specimen, on its own grid, so that their contact can be solved beside its own.
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,7 +14,9 @@ import xarray as xr
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.settings import SpecimenSettings
-from ..scan.read import read_faces
+from ..gridding.faces import grid_pair
+from ..gridding.measured import Measured
+from ..scan.options import ScanOptions
 from ..states.scan_spread import OTHER_FACES, READING
 from ..surface.specimen import make_specimen, window_arguments
 
@@ -31,8 +31,8 @@ MIN_CORRELATION = 0.9
 def with_other_readings(
     specimen: xr.Dataset,
     faces: tuple[xr.DataArray, xr.DataArray],
-    files: tuple[Path | str, Path | str],
-    options: Mapping[str, Any],
+    measured: tuple[Measured, Measured],
+    options: ScanOptions,
     settings: SpecimenSettings,
 ) -> xr.Dataset:
     """Specimen of two faces with :data:`states.scan_spread.OTHER_FACES`, where there are others.
@@ -43,14 +43,15 @@ def with_other_readings(
         From :func:`surface.specimen.make_specimen`.
     faces : tuple of DataArray (y, x)
         That it was made from.
-    files : tuple of path-like
-    options : mapping
-        Scan keys of the sidecar.
+    measured : tuple of Measured
+        Numbers of both files, from :func:`scan.read.measure_faces`.
+    options : ScanOptions
+        Scan keys of the pair.
     settings : SpecimenSettings
     """
     on_grid: dict[str, np.ndarray] = {}
     # One at a time: of large scans each takes much memory.
-    for words, other in _readings(faces, files, options, settings):
+    for words, other in _readings(faces, measured, options, settings):
         heights = _on_grid(specimen, other)
         if heights is not None:
             on_grid[words] = heights
@@ -63,14 +64,14 @@ def with_other_readings(
     return specimen.assign_coords(coords).assign({OTHER_FACES: (dims, every, attrs)})
 
 
-def _readings(faces, files, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
+def _readings(faces, measured, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
     """Other readings by name, each as a specimen."""
-    stated = options.get("registration") or _REGISTERED
+    stated = options.registration or _REGISTERED
     otherwise = _REGISTERED if stated == _UNREGISTERED else _UNREGISTERED
-    (lower, upper), pairs = files, {stated: faces}
+    pairs = {stated: faces}
     # As they were given, faces may share no area, or lie in the wrong order.
     with suppress(InputError):
-        pairs[otherwise] = read_faces(lower, upper, {**options, "registration": otherwise})
+        pairs[otherwise] = grid_pair(*measured, otherwise, options.mirror_upper)
     if stated != _UNREGISTERED and not _in_one_frame(faces):
         pairs.pop(otherwise, None)
     for registration, pair in pairs.items():

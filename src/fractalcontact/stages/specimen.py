@@ -8,11 +8,12 @@ import xarray as xr
 from ..core.datasets import titled
 from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
+from ..gridding.faces import grid_pair
 from ..joint.joint import describe_joint
 from ..registration.registration_scatter import motion_variables, scattered_motions
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
-from ..scan.read import read_faces
+from ..scan.read import measure_faces, read_faces
 from ..surface.specimen import make_specimen, window_arguments
 from .other_readings import with_other_readings
 
@@ -27,8 +28,22 @@ def stages_of_scan(
 
     ``options`` are the scan keys of the sidecar. Raises InputError as :func:`prepare_specimen`.
     """
-    lower, upper = files[0], files[1] if len(files) > 1 else None
-    return specimen_stages(prepare_specimen(lower, upper, options, settings, name), settings)
+    return specimen_stages(specimen_of_files(files, options, settings, name), settings)
+
+
+def specimen_of_files(
+    files: Sequence[Path | str], options: Mapping, settings: SpecimenSettings, name: str
+) -> xr.Dataset:
+    """Specimen of :func:`prepare_specimen` with the heights by other fair readings of two scans.
+
+    ``files`` are that of the lower face, and that of the upper if scanned. Raises InputError.
+    """
+    if len(files) == 1:
+        return prepare_specimen(files[0], None, options, settings, name)
+    lower, upper, given = measure_faces(*files, options)
+    faces = grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
+    specimen = _of_faces(*faces, settings, name)
+    return with_other_readings(specimen, faces, (lower, upper), given, settings)
 
 
 def prepare_specimen(
@@ -40,8 +55,7 @@ def prepare_specimen(
 ) -> xr.Dataset:
     """Specimen of :func:`surface.specimen.make_specimen`: faces read and levelled, window placed.
 
-    Of two registered faces it also holds further motions that are statistically as good, and the
-    heights by other fair readings of the scans.
+    Of two registered faces it also holds further motions that are statistically as good.
 
     Parameters
     ----------
@@ -57,14 +71,14 @@ def prepare_specimen(
     InputError
         If a file cannot be read, or the window finds no place.
     """
-    faces = read_faces(lower, upper, options)
-    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
-    z_l, z_u = faces
-    if z_u is None or upper is None:
-        return specimen
-    if motions := scattered_motions(z_l, z_u):
+    return _of_faces(*read_faces(lower, upper, options), settings, name)
+
+
+def _of_faces(lower, upper, settings, name) -> xr.Dataset:
+    specimen = make_specimen(lower, upper, name=name, **window_arguments(settings))
+    if upper is not None and (motions := scattered_motions(lower, upper)):
         specimen = specimen.assign(motion_variables(motions))
-    return with_other_readings(specimen, (z_l, z_u), (lower, upper), options, settings)
+    return specimen
 
 
 @titled(

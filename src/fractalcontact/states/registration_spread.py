@@ -13,8 +13,7 @@ from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .loading import JointLoading
 from .separation import ROUNDING
 from .subgrid import QUANTITIES as OF_STATES
-from .subgrid import state_quantities
-from .sweep import load_steps
+from .subgrid import composite_quantities
 
 #: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
 #: first load at the seat or beyond, mm.
@@ -42,29 +41,25 @@ def registration_values(
     """Closures, separation, area and stiffness of each registration that is as good.
 
     Arrays (motion, load) by :data:`QUANTITIES`, under the study's loads unless others are given;
-    empty along the motions where the specimen holds none. The separation is max h - mean h - w:
-    that of the faces' mean planes within the window, which needs no highest node of the mated
-    faces. Raises `NotConverged`.
+    empty along the motions where the specimen holds none. The first four are those of
+    :func:`states.subgrid.composite_quantities`. Raises `NotConverged`.
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
-    space = loading.half_space(loading.shape)
+    composites = (
+        (
+            "another registration",
+            replace(loading, specimen=moved_specimen(loading.specimen, motion)).composite(
+                int(cells)
+            ),
+        )
+        for motion in stored_motions(loading.specimen)
+    )
+    values = composite_quantities(loading, composites, forces)
     seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
     seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
-    rows = []
-    for motion in stored_motions(loading.specimen):
-        moved = replace(loading, specimen=moved_specimen(loading.specimen, motion))
-        composite = moved.composite(int(cells))
-        where = f"specimen {loading.specimen.attrs['name']}, another registration"
-        states = load_steps(composite, space, forces, loading.solving, where)
-        datum = float(composite.max()), float(composite.mean())
-        quantities = [state_quantities(state, *datum) for state in states]
-        row = {name: np.array([of_state[name] for of_state in quantities]) for name in OF_STATES}
-        rows.append(row | {"seated_closure": row["closure"] - row["closure"][seat]})
-    return {
-        name: np.array([row[name] for row in rows]).reshape(len(rows), len(forces))
-        for name in QUANTITIES
-    }
+    closure = values["closure"]
+    return values | {"seated_closure": closure - closure[:, [seat]]}
 
 
 def registration_spread(

@@ -8,8 +8,7 @@ import xarray as xr
 
 from ..core.settings import Load
 from .loading import JointLoading
-from .subgrid import QUANTITIES, state_quantities
-from .sweep import load_steps
+from .subgrid import composite_quantities
 
 #: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
 OTHER_FACES = "other_faces"
@@ -39,42 +38,19 @@ def reading_values(
 ) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness by this reading and each other one.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Of two scanned faces, at one offset.
-    loads : sequence of (float, str), optional
-        Those solved; the study's if left out.
-
-    Returns
-    -------
-    dict of str to (reading, load) ndarray
-        By :data:`states.subgrid.QUANTITIES`, this reading first. The separation is that of
-        :func:`states.registration_spread.registration_values`. A reading whose faces have a hole
-        where the window slides is left out.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    Arrays (reading, load) of :func:`states.subgrid.composite_quantities`, this reading first, under
+    the study's loads unless others are given. A reading whose faces have a hole where the window
+    slides is left out. Raises `NotConverged`.
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
-    space = loading.half_space(loading.shape)
-    rows = []
-    for words, specimen in {
-        "this one": loading.specimen,
-        **other_readings(loading.specimen),
-    }.items():
-        composite = replace(loading, specimen=specimen).composite(int(cells))
-        if not np.isfinite(composite).all():
-            continue
-        where = f"specimen {specimen.attrs['name']}, {words}"
-        datum = float(composite.max()), float(composite.mean())
-        states = load_steps(composite, space, forces, loading.solving, where)
-        found = [state_quantities(state, *datum) for state in states]
-        rows.append({name: np.array([one[name] for one in found]) for name in QUANTITIES})
-    return {name: np.array([row[name] for row in rows]) for name in QUANTITIES}
+    readings = {"this one": loading.specimen, **other_readings(loading.specimen)}
+    composites = (
+        (words, replace(loading, specimen=specimen).composite(int(cells)))
+        for words, specimen in readings.items()
+    )
+    whole = ((words, h) for words, h in composites if np.isfinite(h).all())
+    return composite_quantities(loading, whole, forces)
 
 
 def scan_spread(
@@ -84,20 +60,8 @@ def scan_spread(
 
     Not a half-width of chance: readings are few, and none is more likely than another.
 
-    Parameters
-    ----------
-    loading, loads
-        As for :func:`reading_values`.
-
-    Returns
-    -------
-    dict of str to (load,) ndarray, or None
-        By :data:`states.subgrid.QUANTITIES`, in their units. None without another reading.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    Half-widths (load,) by :data:`states.subgrid.QUANTITIES`, in their units; None without another
+    reading. Raises `NotConverged`.
     """
     if not other_readings(loading.specimen):
         return None

@@ -1,6 +1,6 @@
 """Sub-grids: the same surface on finer grids, and its contact states there."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
+from .loading import JointLoading
 from .settlement import bulk_settlement, interface_closure
 from .state_scalars import state_area
 from .sweep import load_steps
@@ -82,6 +83,25 @@ def subgrid_states(
     highest = float(heights.max())
     for state in load_steps(heights, finer, forces, solving, f"{where}, spacing / {factor}"):
         yield state, highest
+
+
+def composite_quantities(
+    loading: JointLoading, composites: Iterable[tuple[str, np.ndarray]], forces: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The :data:`QUANTITIES` (composite, load) of a joint by other composite topographies of it.
+
+    Composites have a name, for errors. The separation is max h - mean h - w: that of the mean
+    planes within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
+    """
+    space, rows = loading.half_space(loading.shape), []
+    for name, composite in composites:
+        where = f"specimen {loading.specimen.attrs['name']}, {name}"
+        states = load_steps(composite, space, forces, loading.solving, where)
+        datum = float(composite.max()), float(composite.mean())
+        of_loads = [state_quantities(state, *datum) for state in states]
+        rows.append([[of_state[name] for name in QUANTITIES] for of_state in of_loads])
+    table = np.reshape(rows, (len(rows), len(forces), len(QUANTITIES)))
+    return dict(zip(QUANTITIES, np.moveaxis(table, -1, 0), strict=True))
 
 
 def state_quantities(
