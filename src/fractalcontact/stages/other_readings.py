@@ -69,11 +69,11 @@ def _readings(faces, measured, options, settings) -> Iterator[tuple[str, xr.Data
     stated = options.registration or _REGISTERED
     otherwise = _REGISTERED if stated == _UNREGISTERED else _UNREGISTERED
     pairs = {stated: faces}
-    # As they were given, faces may share no area, or lie in the wrong order.
-    with suppress(InputError):
-        pairs[otherwise] = grid_pair(*measured, otherwise, options.mirror_upper)
-    if stated != _UNREGISTERED and not _in_one_frame(faces):
-        pairs.pop(otherwise, None)
+    if stated == _UNREGISTERED or _in_one_frame(faces):
+        lower, upper = measured
+        # As they were given, faces may share no area, or lie in the wrong order.
+        with suppress(InputError):
+            pairs[otherwise] = grid_pair(lower, upper, otherwise, options.mirror_upper)
     for registration, pair in pairs.items():
         for outliers in (settings.outliers, _TREATED[settings.outliers]):
             if (registration, outliers) == (stated, settings.outliers):

@@ -40,7 +40,7 @@ def specimen_of_files(
     """
     if len(files) == 1:
         return prepare_specimen(files[0], None, options, settings, name)
-    lower, upper, given = measure_faces(*files, options)
+    lower, upper, given = measure_faces(files[0], files[1], options)
     faces = grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
     specimen = _of_faces(*faces, settings, name)
     return with_other_readings(specimen, faces, (lower, upper), given, settings)

@@ -46,14 +46,11 @@ def registration_values(
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
+    motions = stored_motions(loading.specimen)
+    moved = (moved_specimen(loading.specimen, motion) for motion in motions)
     composites = (
-        (
-            "another registration",
-            replace(loading, specimen=moved_specimen(loading.specimen, motion)).composite(
-                int(cells)
-            ),
-        )
-        for motion in stored_motions(loading.specimen)
+        ("another registration", replace(loading, specimen=specimen).composite(int(cells)))
+        for specimen in moved
     )
     values = composite_quantities(loading, composites, forces)
     seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
