@@ -9,26 +9,16 @@ over the seeds, which is what twins or realisations know.
 import argparse
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
-import scipy.ndimage
-import xarray as xr
 from calibration import FIRST_SEED, PRESSURES, TWINS, write_rows
-from calibration_sampling import SEAT, face_of
+from calibration_sampling import DELTA_SIGMA, counted_states, face_of
 
 from fractalcontact.core.intervals import t_quantile
-from fractalcontact.domain.clusters import NEIGHBOURS
-from fractalcontact.error_budget.counting import counting_error
-from fractalcontact.error_budget.refinement import LoadCurve
 from fractalcontact.flow.aperture import MAX_CRUSHED
 from fractalcontact.flow.cubic_law import GAP_POWER, flow_of, window_interval
-from fractalcontact.states.area_sampling import state_area_sampling
 from fractalcontact.states.state_scalars import aperture
-from fractalcontact.states.subgrid import state_quantities
-from fractalcontact.states.sweep import load_steps
 from roughcontact.contact.path import loaded_state
-from roughcontact.elastic.halfspace import HalfSpace
 
 #: Joints of calibration.py, with windows that are solved in seconds: of the same length.
 JOINTS = {
@@ -45,40 +35,21 @@ def states_of(joint, seed):
 
     T is NaN where the grid does not resolve the flow, or crushed rock may fill the gap.
     """
-    face = face_of(joint, seed)
-    composite = face[:, joint.slid :] - face[:, : -joint.slid]
     spacing = (joint.spacing,) * 2
-    space = HalfSpace(composite.shape, spacing, joint.modulus)
-    area = composite.size * joint.spacing**2
-    forces = area * np.array([SEAT, *PRESSURES])
-    solving = {"rtol": 1e-4, "hardness": joint.hardness}
-    rows, flows = [], []
-    for state in load_steps(composite, space, forces, solving, "calibration"):
-        found = state_quantities(state, float(composite.max()))
+
+    def flow(state):
         gap = aperture(state)
-        row = {
-            "area_share": state.in_contact.mean(),
-            "area_corrected": found["area_corrected"],
-            "area_sampling": state_area_sampling(state),
-            "closure": state.closure,
-            "stiffness": found["stiffness"],
-            "interface_closure": found["closure"],
-            "interface_stiffness": found["stiffness"],
-            "mean_gap": gap.mean(),
-            "clusters": scipy.ndimage.label(state.in_contact, NEIGHBOURS)[1],
-        }
-        rows.append(row | dict.fromkeys(("delta_sigma", "delta_sigma_low", "delta_sigma_high"), 0))
         flow = flow_of(gap, spacing, "x")
         crushed = loaded_state(state).permanent_set.mean() / gap.mean()
-        stated = flow.resolved and crushed <= MAX_CRUSHED and flow.transmissivity > 0
-        whole = flow.transmissivity if stated else np.nan
+        is_stated = flow.resolved and crushed <= MAX_CRUSHED and flow.transmissivity > 0
+        whole = flow.transmissivity if is_stated else np.nan
         quarters = window_interval(gap, spacing, "x", whole)
-        flows.append((np.log(whole), np.log(quarters.high / whole)))
-    table = {name: ("normal_force", [row[name] for row in rows]) for name in rows[0]}
-    curve = xr.Dataset(table, {"normal_force": forces})
-    loading = SimpleNamespace(area=area, half_space=lambda shape, resolution: space)
-    counted = counting_error(LoadCurve(loading, composite, 0.0, 1, curve, curve))[1]
-    return np.array([*np.transpose(flows), curve["mean_gap"].values, counted])[:, 1:]
+        numbers = {"log_t": np.log(whole), "quarters": np.log(quarters.high / whole)}
+        return numbers | dict.fromkeys(DELTA_SIGMA, 0)  # not wanted
+
+    *_, curve, counted = counted_states(joint, face_of(joint, seed), flow)
+    numbers = [curve[name].values for name in ("log_t", "quarters", "mean_gap")]
+    return np.array([*numbers, counted[1]])[:, 1:]
 
 
 def rows(seeds):

@@ -43,6 +43,8 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 #: Joints of calibration.py, and of how many seeds the twins are solved.
 JOINTS = {"sandstone": 30, "sandstone, capped": 20, "joint 2.1": 16}
+#: Columns of Delta_sigma and the ends of its interval.
+DELTA_SIGMA = ("delta_sigma", "delta_sigma_low", "delta_sigma_high")
 #: Load that closures count from, MPa.
 SEAT = 0.25
 #: Quantities, and the rows of `counting_error` that are stated of them: none of a closure from a
@@ -81,18 +83,23 @@ def face_of(joint, seed):
     return _unscaled(joint, seed, prefactor_of(joint))[first:last, first : last + joint.slid]
 
 
-def states_of(joint, face):
-    """Values (quantity, load) of a window, and half-widths by counting, NaN of none stated."""
+def solving_of(joint):
+    """Arguments of the solver for a joint."""
+    return {"rtol": 1e-4, "hardness": joint.hardness}
+
+
+def counted_states(joint, face, more):
+    """Composite, forces, numbers of the states of a window, and their half-widths by counting.
+
+    ``more`` gives further numbers of a state by name, Delta_sigma with its interval among them.
+    """
     composite = face[:, joint.slid :] - face[:, : -joint.slid]
     space = HalfSpace(composite.shape, (joint.spacing,) * 2, joint.modulus)
     area = composite.size * joint.spacing**2
     forces = area * np.array([SEAT, *PRESSURES])
-    solving = {"rtol": 1e-4, "hardness": joint.hardness}
     rows = []
-    for state in load_steps(composite, space, forces, solving, "calibration"):
+    for state in load_steps(composite, space, forces, solving_of(joint), "calibration"):
         found = state_quantities(state, float(composite.max()))
-        boxes = dimension_of_domain(state.in_contact, joint.spacing)
-        ends = dict(zip(("", "_low", "_high"), boxes.ends, strict=True))
         row = {
             "area_share": state.in_contact.mean(),
             "area_corrected": found["area_corrected"],
@@ -104,24 +111,35 @@ def states_of(joint, face):
             "mean_gap": aperture(state).mean(),
             "clusters": scipy.ndimage.label(state.in_contact, NEIGHBOURS)[1],
         }
-        rows.append(row | {f"delta_sigma{end}": value for end, value in ends.items()})
+        rows.append(row | more(state))
     table = {name: ("normal_force", [row[name] for row in rows]) for name in rows[0]}
     curve = xr.Dataset(table, {"normal_force": forces})
     loading = SimpleNamespace(area=area, half_space=lambda shape, resolution: space)
     counted = counting_error(LoadCurve(loading, composite, 0.0, 1, curve, curve))
+    return composite, forces, curve, counted
+
+
+def states_of(joint, face):
+    """Values (quantity, load) of a window, and half-widths by counting, NaN of none stated."""
+
+    def dimension(state):
+        boxes = dimension_of_domain(state.in_contact, joint.spacing)
+        return dict(zip(DELTA_SIGMA, boxes.ends, strict=True))
+
+    composite, forces, curve, counted = counted_states(joint, face, dimension)
     none = np.full(len(forces), np.nan)
     half = [none if row is None else counted[row] for row in QUANTITIES.values()]
     seated = curve["interface_closure"] - curve["interface_closure"][0]
     of_state = ("mean_gap", "area_corrected", "interface_stiffness", "delta_sigma")
-    by_area, low, high = _by_areas(joint, composite, forces, solving)
+    by_area, low, high = _by_areas(joint, composite, forces)
     half[-1] = (high - low) / 2
     values = [seated.values, *(curve[name].values for name in of_state), by_area]
     return np.array(values)[:, 1:], np.array(half)[:, 1:]
 
 
-def _by_areas(joint, composite, forces, solving):
+def _by_areas(joint, composite, forces):
     """Delta_sigma by A_r(s) with the ends of its interval, (3, load)."""
-    found = []
+    found, solving = [], solving_of(joint)
     for k in RESOLUTIONS:
         heights = prefractal(composite, k)
         space = HalfSpace(heights.shape, (k * joint.spacing,) * 2, joint.modulus)

@@ -3,24 +3,14 @@
 import numpy as np
 import pytest
 from scipy import ndimage
+from tiny_pairs import STUDY
 
 from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.states.scan_spread import OTHER_FACES, READING
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.synthesis import self_affine
 
-STUDY = {
-    "study": "tiny",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
-    "defaults": {
-        "material": "rock",
-        "contact_directions": ["E"],
-        "offsets": ["0 mm"],
-        "loads": ["1 MPa", "25 MPa"],
-        "resolutions": [1],
-        "window": "16 mm",
-    },
-}
+DEFAULTS = STUDY["defaults"] | {"offsets": ["0 mm"]}
 OPTIONS = {
     **{"kind": "face", "layout": "matrix", "delimiter": "comma", "decimal": ".", "header": 0},
     **{"missing": "none", "heights": "up", "unit": "mm", "spacing": "0.5 mm"},
@@ -43,7 +33,7 @@ def files(tmp_path_factory):
 
 
 def specimen_of(files, own=(), **options):
-    settings = resolve_settings(STUDY, "joint", dict(own), "tiny")
+    settings = resolve_settings(STUDY | {"defaults": DEFAULTS}, "joint", dict(own), "tiny")
     return specimen_of_files(files, OPTIONS | options, settings, "joint")
 
 

@@ -2,45 +2,26 @@
 
 import numpy as np
 import pytest
-from samples import scan_of
+from tiny_pairs import loading_of, pair
 
 from fractalcontact.core.intervals import t_quantile
 from fractalcontact.registration.registration_scatter import motion_variables
 from fractalcontact.registration.surface_motion import Motion
-from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.registration_spread import (
     QUANTITIES,
     moved_specimen,
     registration_spread,
     registration_values,
 )
-from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.surface.specimen import make_specimen, window_arguments
-from fractalcontact.surface.synthesis import self_affine
 
-STUDY = {
-    "study": "tiny",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
-    "defaults": {
-        "material": "rock",
-        "contact_directions": ["E"],
-        "loads": ["1 MPa", "25 MPa"],
-        "resolutions": [1],
-        "window": "16 mm",
-    },
-}
-SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
 MIDDLE = (12.0, 12.0)
 
 
 def loading(motions, level=0.0):
-    z = self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=1)
-    upper = z + 0.1 * self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=2)
-    faces = scan_of(z), scan_of(upper + 0.5 + level)
-    specimen = make_specimen(*faces, name="rock", **window_arguments(SETTINGS))
+    specimen = pair(level)
     if motions:
         specimen = specimen.assign(motion_variables(motions))
-    return JointLoading(specimen, "E", 0, SETTINGS, solver_settings({}, "tiny")).at(0)
+    return loading_of(specimen)
 
 
 def test_registrations_that_are_none_have_no_spread():

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from samples import scan_of
+from tiny_pairs import loading_of, pair
 
-from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.scan_spread import (
     OTHER_FACES,
     READING,
@@ -13,37 +12,19 @@ from fractalcontact.states.scan_spread import (
     scan_spread,
 )
 from fractalcontact.states.subgrid import QUANTITIES
-from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
-
-STUDY = {
-    "study": "tiny",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
-    "defaults": {
-        "material": "rock",
-        "contact_directions": ["E"],
-        "loads": ["1 MPa", "25 MPa"],
-        "resolutions": [1],
-        "window": "16 mm",
-    },
-}
-SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
 
 
 def loading(*changes):
     """A pair with further readings, each the upper face plus a change (ny, nx)."""
-    z = self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=1)
-    upper = z + 0.1 * self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=2)
-    faces = scan_of(z), scan_of(upper + 0.5)
-    specimen = make_specimen(*faces, name="rock", **window_arguments(SETTINGS))
+    specimen = pair()
     if changes:
         own = np.stack([specimen["lower"].values, specimen["upper"].values])
         heights = [own + np.stack([np.zeros_like(change), change]) for change in changes]
         names = [f"reading {i}" for i in range(len(changes))]
         specimen = specimen.assign_coords({READING: names, "face": ["lower", "upper"]})
         specimen = specimen.assign({OTHER_FACES: ((READING, "face", "y", "x"), np.stack(heights))})
-    return JointLoading(specimen, "E", 0, SETTINGS, solver_settings({}, "tiny")).at(0)
+    return loading_of(specimen)
 
 
 def test_a_single_reading_has_no_spread():

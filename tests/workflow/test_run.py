@@ -1,4 +1,4 @@
-"""What workflow/run.py looks at before and after Snakemake, part by part."""
+"""Checks of workflow/run.py before and after Snakemake, part by part."""
 
 import importlib
 import os
@@ -29,7 +29,7 @@ def run(monkeypatch, tmp_path):
 
 
 def begun(run, monkeypatch, *words, status=0):
-    """What Snakemake would be started with by a command line, and the exit code."""
+    """Arguments that a command line starts Snakemake with, and the exit code."""
     asked = {}
 
     def instead(command, options, results):
@@ -152,7 +152,7 @@ def test_make_is_ended_only_where_the_run_failed(run, monkeypatch):
 
 @pytest.fixture
 def left(run, monkeypatch, tmp_path):
-    """What a killed run leaves, and a file that nothing is known of."""
+    """Leftovers of a killed run, and a file without a record."""
     locks, results = tmp_path / ".snakemake/locks", tmp_path / "results"
     locks.mkdir(parents=True)
     results.mkdir()

@@ -1,6 +1,6 @@
 """Effect of a roll-off on rigid dilatancy: many joints with one, and the same joints without.
 
-One joint decides nothing. The dilatancy is a largest height, which scatters from surface to
+One joint is not conclusive. The dilatancy is a largest height, which scatters from surface to
 surface by more than it grows over the second half of the offsets.
 """
 

@@ -28,7 +28,7 @@ _WORDS = {
     "plateau_trend": ("1", f"trend of the {_HALF}: {LEVEL}, {RISING} or {FALLING}"),
     "no_plateau": ("1", "why it has no line"),
 }
-#: Reason why a trend decides nothing about a plateau: dimensions, unit, long name.
+#: Reason why a trend is not conclusive about a plateau: dimensions, unit, long name.
 _UNDECIDED = {
     "plateau_undecided": ("direction", "1", f"why there is no verdict on a plateau of the {_HALF}")
 }

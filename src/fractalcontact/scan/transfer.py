@@ -35,13 +35,13 @@ def send_scan(raw: RawScan, stream: BinaryIO) -> None:
         stream.write(memoryview(array).cast("B"))  # type: ignore[arg-type]  # arrays are buffers
 
 
-def receive_scan(message: dict, stream: Any, most_bytes: int) -> RawScan | None:
-    """Scan that a line announces, None if it breaks off or exceeds ``most_bytes``."""
+def receive_scan(message: dict, stream: Any, max_bytes: int) -> RawScan | None:
+    """Scan that a line announces, None if it breaks off or exceeds ``max_bytes``."""
     content = {key: value for key, value in message.items() if key not in ("outcome", "arrays")}
     for name, head in message["arrays"].items():
         dtype = np.dtype(head["dtype"])
         shape = head["shape"]
-        if dtype.kind not in _DTYPES or np.prod(shape, dtype=float) * dtype.itemsize > most_bytes:
+        if dtype.kind not in _DTYPES or np.prod(shape, dtype=float) * dtype.itemsize > max_bytes:
             return None
         content[name] = np.empty(shape, dtype)
         rest = memoryview(content[name]).cast("B")

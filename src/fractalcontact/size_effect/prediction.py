@@ -17,12 +17,12 @@ from ..core.ranges import within
 PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effect")
 
 
-def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: int) -> xr.Dataset:
+def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, min_nodes: int) -> xr.Dataset:
     """Closure and real area of the whole window, from smaller windows and as solved.
 
     ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`, ``delta_sigma``
     (estimator, normal_force) is that of the whole window; a size is used where its windows hold
-    ``fewest_nodes`` on the average. ``predicted_closure``, ``predicted_area`` (predictor,
+    ``min_nodes`` on the average. ``predicted_closure``, ``predicted_area`` (predictor,
     normal_force) with intervals, ``direct_closure``, ``direct_area`` (normal_force), and
     ``closure_error``, ``area_error`` (predictor, load) = predicted / direct - 1, at the finest
     resolution.
@@ -36,7 +36,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     b, pressures = states["side"].values, states["ladder_pressure"].values
     loads = pressures[: states.sizes["normal_force"]]
     powers = [*(2 - delta_sigma.values), np.zeros(len(loads))]
-    fraction, closure = _mean_curves(states, fewest_nodes)
+    fraction, closure = _mean_curves(states, min_nodes)
 
     def at_equal_star(curves: np.ndarray, powers: np.ndarray) -> np.ndarray:
         """Curves over pressure of smaller sizes, each at the pressure eq. 6 has for it."""
@@ -66,14 +66,14 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
     return result
 
 
-def _mean_curves(states: xr.Dataset, fewest_nodes: int) -> tuple[np.ndarray, np.ndarray]:
+def _mean_curves(states: xr.Dataset, min_nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Mean A_r/A_0 and w_int (part, step) of the windows of each size, where nodes are enough."""
     b = states["side"].values
     nodes, closing = (
         mean.mean("window").transpose("part", "step").values
         for mean in (states["nodes"].isel(resolution=0), states["interface_closure"])
     )
-    enough = within(nodes, fewest_nodes, np.inf)
+    enough = within(nodes, min_nodes, np.inf)
     fraction = np.where(enough, nodes, np.nan)
     fraction = fraction * states["spacing"].values[0] ** 2 / b[:, np.newaxis] ** 2
     return fraction, np.where(enough & (closing > 0), closing, np.nan)
