@@ -35,17 +35,17 @@ def grid_one(scan: Measured) -> xr.DataArray:
 def grid_pair(
     lower: Measured,
     upper: Measured,
-    registration: str = "rigid",
+    registration: str | None = None,
     mirror_upper: str | None = None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Two faces on one common grid, registered and cropped to their common area.
 
-    ``registration`` is that of `pairs.register`. ``mirror_upper`` is the direction, x or y, that
-    runs the other way in an upper face scanned on its back. Matrices of different spacings are
-    refused.
+    ``registration`` is that of `pairs.register`, rigid by default. ``mirror_upper`` is the
+    direction, x or y, that runs the other way in an upper face scanned on its back. Matrices of
+    different spacings are refused.
     """
     assert (lower.layout == "matrix") == (upper.layout == "matrix")  # `read_faces` refused others
-    where = f"{lower.path} and {upper.path}"
+    where, registration = f"{lower.path} and {upper.path}", registration or "rigid"
     if mirror_upper is not None:
         upper = _turned_over(upper, mirror_upper)
     if lower.layout == "matrix":

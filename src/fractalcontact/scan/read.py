@@ -102,7 +102,7 @@ def read_faces(
                 )
         return read_scan(lower_path, options), None
     lower, upper, given = measure_faces(lower_path, upper_path, options)
-    return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
+    return grid_pair(lower, upper, given.registration, given.mirror_upper)
 
 
 def measure_faces(

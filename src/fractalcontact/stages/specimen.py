@@ -41,7 +41,7 @@ def specimen_of_files(
     if len(files) == 1:
         return prepare_specimen(files[0], None, options, settings, name)
     lower, upper, given = measure_faces(files[0], files[1], options)
-    faces = grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
+    faces = grid_pair(lower, upper, given.registration, given.mirror_upper)
     specimen = _of_faces(*faces, settings, name)
     return with_other_readings(specimen, faces, (lower, upper), given, settings)
 
@@ -84,7 +84,7 @@ def _of_faces(lower, upper, settings, name) -> xr.Dataset:
 @titled(
     specimens="levelled faces, mask, window and where they came from",
     quality="relief, spectra and noise floor of each face, and where its fractal range ends",
-    surface_dimension="Delta_g of each face by several estimators",
+    surface_dimension="Delta_g of the lower face by several estimators",
     joints="offsets and composite topographies",
 )
 def specimen_stages(specimen: xr.Dataset, settings: SpecimenSettings) -> dict[str, xr.Dataset]:

@@ -1,8 +1,4 @@
-"""Loading of a joint: offsets, loads, resolutions and half-space.
-
-These five travel together through every solve of a study, and what follows from them (lengths,
-forces, half-spaces) is computed here and nowhere else.
-"""
+"""Loading of a joint: arguments of every solve, and lengths, forces, half-spaces that follow."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -60,7 +60,7 @@ def scan_spread(
 
     Not a half-width of chance: readings are few, and none is more likely than another.
 
-    Half-widths (load,) by :data:`states.subgrid.QUANTITIES`, in their units; None without another
+    Distances (load,) by :data:`states.subgrid.QUANTITIES`, in their units; None without another
     reading. Raises `NotConverged`.
     """
     if not other_readings(loading.specimen):

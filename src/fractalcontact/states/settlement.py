@@ -1,6 +1,6 @@
 """Closure of the interface: that of the window without the settlement of the blocks.
 
-Apart from the laws of closure, so that a new law solves no state again.
+It lies below the laws of closure, so that a new law solves no state again.
 """
 
 from typing import Any

@@ -1,6 +1,6 @@
 """Contact states: fields kept, loads, and the joining of their parts.
 
-Apart from the solving, which takes the solver: most jobs of a study only read states.
+No solver is imported here: most jobs of a study only read states.
 """
 
 from collections.abc import Mapping, Sequence
