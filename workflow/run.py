@@ -169,6 +169,8 @@ def _run(command, options, results):
     path += filter(None, [os.environ.get("PYTHONPATH")])
     variables = {"PYTHONPATH": os.pathsep.join(path), "FRACTALCONTACT_RESULTS": str(results)}
     cluster, child = options.profile != "default", None
+    if options.executor == "fractalcontact" and not (cluster or options.dry_run):
+        variables["FRACTALCONTACT_SERVER"] = "yes"  # the server of jobs loads beside Snakemake
     try:
         _answer_signals(_stop)
         child = subprocess.Popen(

@@ -3,7 +3,8 @@
 Snakemake's own local executor starts Python for every script, which then imports modules and loads
 kernels for 2.5 s of processor time. Here `multiprocessing` keeps a server that has loaded them, and
 forks it for every job of one thread. A job of more threads gets a process of its own, because
-libraries take their number of threads when they are loaded.
+libraries take their number of threads when they are loaded. The server loads while Snakemake still
+reads the workflow, if `workflow/run.py` asks for it.
 
 Without it (``make EXECUTOR=local``, ``snakemake`` without ``--executor fractalcontact``, a cluster,
 any system but Linux) Snakemake starts the same scripts, with the same results to the last bit:
@@ -19,7 +20,7 @@ import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing import connection
+from multiprocessing import connection, forkserver
 from pathlib import Path
 
 from snakemake.iocontainers import Snakemake
@@ -36,6 +37,8 @@ common_settings = CommonSettings(
     pass_envvar_declarations_to_cmd=True,
     auto_deploy_default_storage_provider=False,
 )
+#: Environment variable that `workflow/run.py` sets for a run that will need the server.
+AHEAD = "FRACTALCONTACT_SERVER"
 #: Modules that the server imports before its first job.
 LOADED = [__name__, f"{__name__}.loaded"]
 #: Variables from which libraries take their number of threads, as Snakemake sets them for scripts.
@@ -49,7 +52,7 @@ class Executor(RealExecutor):
     """Executor of jobs on this machine."""
 
     def __post_init__(self):
-        """Prepare the server, which starts with the first job."""
+        """Prepare the server, which the first job starts unless it runs already."""
         self.forks = multiprocessing.get_context("forkserver")
         self.forks.set_forkserver_preload(LOADED)
         self.alone = multiprocessing.get_context("spawn")
@@ -132,6 +135,13 @@ def run_script(script: str, given: Snakemake) -> None:
     runpy.run_path(script, {"snakemake": given}, "__main__")
 
 
+def start_server() -> None:
+    """Start the server that jobs are forked from, which then loads its modules beside this."""
+    multiprocessing.set_forkserver_preload(LOADED)
+    with _environment(_threads(1) | MEMORY):
+        forkserver.ensure_running()
+
+
 def _threads(number):
     return {f"{name}_NUM_THREADS": str(number) for name in THREADS}
 
@@ -146,3 +156,9 @@ def _environment(told):
     finally:
         for name, value in before.items():
             os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+# Snakemake imports its plugins first of all. The server imports this module too, but then the
+# variable is gone.
+if os.environ.pop(AHEAD, None):
+    start_server()
