@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+from concurrent.futures import Future
 from types import SimpleNamespace
 
 import pytest
@@ -119,3 +120,19 @@ def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
         assert "MALLOC_TRIM_THRESHOLD_" in os.environ
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MALLOC_TRIM_THRESHOLD_" not in os.environ
+
+
+def test_an_ended_job_leaves_no_timer_of_the_scheduler(executor, monkeypatch):
+    """Timers would add up, one for each ended job, and each has the scheduler look every second."""
+    ends = []
+    monkeypatch.setattr(executor, "report_job_success", ends.append)
+    timers = [threading.Timer(600, ends.append, ["looked"]) for _ in range(3)]
+    for timer in timers:
+        timer.start()
+    ended = Future()
+    ended.set_result(0)
+    executor._report("the job", ended)
+    for timer in timers:
+        timer.join(60)
+        assert not timer.is_alive()
+    assert ends == ["the job"]
