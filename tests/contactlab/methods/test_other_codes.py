@@ -39,3 +39,12 @@ def test_tamaas_gives_the_same_pressures(problem, ours):
 def test_contact_mechanics_gives_the_same_pressures(problem, ours):
     pytest.importorskip("ContactMechanics")
     check(run_code("docs/other_codes.md", "By ContactMechanics", **given(problem)), ours)
+
+
+def test_aspher_gives_the_same_pressures_in_a_window_alone(problem, ours):
+    here = {**given(problem), **given(ours)}
+    alone = run_code("docs/other_codes.md", "By roughcontact, a window that stands alone", **here)
+    assert alone["pressure"].mean() == pytest.approx(problem["mean_pressure"])
+    pytest.importorskip("aspher")
+    title = "By ASPHER, a window that stands alone"
+    check(run_code("docs/other_codes.md", title, **given(problem)), alone)

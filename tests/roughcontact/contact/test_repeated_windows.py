@@ -1,4 +1,9 @@
-"""Contact of periodic and mirrored windows: exact solutions, dense programmes, hostile scenes."""
+"""Contact of periodic and mirrored windows: exact solutions, dense programmes, hostile scenes.
+
+``make problems PROBLEMS=300`` tries more of the last, up to 200 nodes a side.
+"""
+
+import os
 
 import numpy as np
 import pytest
@@ -11,6 +16,9 @@ from roughcontact import HalfSpace, NotConverged, load_path, solve_contact
 
 BOUNDARIES = ["periodic", "mirrored"]
 SPACING, MODULUS = 0.1, 20e3
+#: Random scenes of each boundary that are tried always.
+ALWAYS = 40
+SCENES = max(ALWAYS, int(os.environ.get("PROBLEMS", 0)))
 
 
 def rough(boundary, n=64, seed=1, rms=0.1):
@@ -269,10 +277,10 @@ def test_large_windows_have_no_candidates(boundary):
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(SCENES))
 def test_random_scenes_meet_the_conditions(seed, boundary):
     """In any unit, shape and load; judged in double precision by transforms of numpy's own."""
-    problem = random_problem(seed + 40, largest=60)
+    problem = random_problem(seed + 40, largest=60 if seed < ALWAYS else 200)
     height, free = problem.height, problem.space
     space = HalfSpace(free.shape, free.spacing, free.modulus, boundary=boundary)
     rng, load = np.random.default_rng(seed), dict(problem.load)
