@@ -4,6 +4,7 @@ from snakemake.utils import min_version
 
 min_version("9.27")
 
+# Not as a default of `--configfile`, which would merge a study into it.
 if not workflow.configfiles:
 
     configfile: "config/paper.yaml"

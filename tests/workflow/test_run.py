@@ -114,8 +114,9 @@ def test_a_page_is_named_where_it_is_of_the_last_results(run, tmp_path, capsys, 
     assert ("index.html" in capsys.readouterr().out) is is_named
 
 
-def options():
-    return SimpleNamespace(profile="default", verbose=True)
+def options(**stated):
+    usual = {"profile": "default", "executor": "local", "dry_run": False, "verbose": True}
+    return SimpleNamespace(**usual | stated)
 
 
 def code_of(script):
@@ -127,6 +128,20 @@ def code_of(script):
 )
 def test_the_exit_code_is_that_of_snakemake_or_its_signal(run, tmp_path, script, status):
     assert run._run(code_of(script), options(), tmp_path) == status
+
+
+@pytest.mark.parametrize(
+    ("stated", "expected"),
+    [
+        ({"executor": "fractalcontact"}, True),
+        ({"executor": "fractalcontact", "dry_run": True}, False),
+        ({"executor": "fractalcontact", "profile": "slurm"}, False),
+        ({}, False),
+    ],
+)
+def test_only_a_run_that_forks_jobs_has_their_server_started(run, tmp_path, stated, expected):
+    script = "os._exit('FRACTALCONTACT_SERVER' in os.environ)"
+    assert run._run(code_of(script), options(**stated), tmp_path) == expected
 
 
 def test_a_run_that_is_told_to_end_ends_its_jobs_and_says_so(run, tmp_path, capsys):

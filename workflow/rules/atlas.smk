@@ -1,4 +1,5 @@
-# The atlas: all results in one file; in a campaign one file a specimen, and one for the whole study.
+# The atlas of the study: all results in one file; in a campaign, one row a specimen. The rule `figures`, in the
+# next file, makes the atlas of each specimen.
 
 #: Files that the rules above make of every specimen, whatever its kind, with {specimen} in their names.
 STAGE_PATTERNS = [
@@ -15,23 +16,24 @@ SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 #: Files of all stages of all specimens.
 STAGE_FILES = [
     *expand(STAGE_PATTERNS, specimen=SPECIMENS),
-    *expand(list(rules.strength.output), specimen=SLIDING),
-    *expand(list(rules.size_laws_against_plane.output), specimen=FLAT),
-    *expand(list(rules.ensemble.output), specimen=ENSEMBLES),
-    *expand(list(rules.measured.output), specimen=TESTED),
+    *expand(rules.strength.output, specimen=SLIDING),
+    *expand(rules.size_laws_against_plane.output, specimen=FLAT),
+    *expand(rules.ensemble.output, specimen=ENSEMBLES),
+    *expand(rules.measured.output, specimen=TESTED),
 ]
 
 
-# Results of all rules above, and the verdicts on the paper's statements about several specimens.
+# Results of all stages, of contact maps and of experiments (in a campaign, the rows that `figures` wrote), and
+# the verdicts on the paper's statements about several specimens.
 rule atlas:
     input:
-        stages=[] if IN_PARTS else STAGE_FILES,
-        rows=expand(SPECIMEN_ROW, specimen=SPECIMENS) if IN_PARTS else [],
+        stages=[] if CAMPAIGN else STAGE_FILES,
+        rows=expand(SPECIMEN_ROW, specimen=SPECIMENS) if CAMPAIGN else [],
         maps=MAP_FILES,
         laboratory=LABORATORY,
     output:
-        # `update`, here and below, keeps the file until the new one is complete. Snakemake would else
-        # remove it before the job begins, while somebody may be reading it.
+        # `update`, here and in other rules, keeps the file until the new one is complete. Snakemake would
+        # else remove it before the job begins, while somebody may be reading it.
         update(f"{RESULTS}/atlas.nc"),
         # Names of its specimens, one a line. A run that would lose one of them is refused.
         names=update(f"{RESULTS}/specimens.txt"),

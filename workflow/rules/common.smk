@@ -1,5 +1,8 @@
 # The checked study, its specimens, and helpers for parameters and resources, which all files of rules use.
 # Imports are light, without xarray, numba or matplotlib, because every job on a cluster reads this file.
+#
+# A script hands the files of a rule's inputs, by name, to one function of the library, and writes what that
+# returns by the names of the outputs. The folder of a result is its stage.
 import functools
 import sys
 from dataclasses import asdict
@@ -28,21 +31,22 @@ from fractalcontact.study.configuration import resolve_embedded
 
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
 # The plan checks the study, reads the sidecars and digests the scans once a run, not once a job.
-RUN = Plan(workflow, config, SOURCE)
-STUDY = RUN.study
+PLAN = Plan(workflow, config, SOURCE)
+STUDY = PLAN.study
 RESULTS = f"results/{config['study']}"
+#: By specimen: its scan files, its settings, the scan keys of its sidecar; by contact map: its label.
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 #: Settings of the solver, and those of each specimen, as plain data.
 SOLVER = asdict(STUDY.solver)
 RECORDS = {name: asdict(stated) for name, stated in SETTINGS.items()}
 
 SPECIMENS = sorted(SETTINGS)
-#: Surfaces against a plane, which cannot slide, and all others.
+#: Specimens that do not slide (surfaces against a plane, and aperture maps), and all others.
 FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
 #: Measured maps of contact, which have labels but no settings.
 MAPS = list(LABELS)
-#: Recipes of surfaces that the study makes, and specimens with tests in a real laboratory.
+#: Recipes of surfaces that the study makes, and specimens with tests in a real laboratory (rule `measured`).
 RECIPES = {name: recipe for name, recipe in config.get("embedded", {}).items() if name in SETTINGS}
 TESTED = [name for name in SPECIMENS if SETTINGS[name].measured]
 #: Number of members of each ensemble: twins of a scan, or realisations of a surface of the study.
@@ -50,9 +54,9 @@ TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twin
 ENSEMBLES = TWINS | {
     name: recipe["realisations"] for name, recipe in RECIPES.items() if "realisations" in recipe
 }
-#: True for a campaign, a study of many specimens. Each specimen then has an atlas of its own and a row
-#: in atlas.nc, and the rule `all` does not ask for every file of every specimen.
-IN_PARTS = campaign.in_parts(config, SPECIMENS)
+#: True for a campaign, a study of many specimens. Its atlas.nc has one row a specimen; the results are in
+#: atlas/{specimen}.nc alone. The rule `all` does not ask for every file of every specimen.
+CAMPAIGN = campaign.in_parts(config, SPECIMENS)
 #: Priorities by rule, 0 for all others. Snakemake begins jobs of high priority first. The longest jobs
 #: begin early, so that no core works alone at the end of a run.
 PRIORITY = {
@@ -64,11 +68,12 @@ PRIORITY = {
     # Short jobs, for a core that has nothing else to do at the end.
     "area_slope": -1,
     "estimator_bias": -1,
-    # Figures are drawn after what the atlas of the study needs, else one core makes it alone at the end.
-    # Figures of joints take longer and begin first. In a campaign nobody wants to wait for the figures.
-    "figures": 0 if IN_PARTS else -2,
-    "figures_against_plane": 0 if IN_PARTS else -3,
-    "explorer": -4,  # at the same time as the result page
+    # Figures are drawn after what the atlas of the study needs, else one core makes that atlas alone at the
+    # end. Figures of joints take longer and begin first. In a campaign `figures` makes the rows of the
+    # atlas, and is not put off.
+    "figures": 0 if CAMPAIGN else -2,
+    "figures_against_plane": 0 if CAMPAIGN else -3,
+    "explorer": -4,  # last: no job waits for it
 }
 
 
@@ -76,9 +81,9 @@ PRIORITY = {
 # minutes. `known` refuses names that are no specimen.
 wildcard_constraints:
     specimen="[^/]+",
-    directions=r"\d+",
-    offsets=r"\d+",
-    resolutions=r"\d+",
+    direction_block=r"\d+",
+    offset_block=r"\d+",
+    resolution_block=r"\d+",
     refused=r"\d+",
 
 
@@ -90,21 +95,23 @@ def known(wildcards):
 
 
 def names_of(some, others):
-    """Constraint of {specimen} to one kind of specimens, where two rules make the same files.
+    """Constraint of {specimen} where two rules make the same files.
 
-    Any name where there is no other kind, and none where there is none of this kind.
+    ``some`` are the specimens of this rule, ``others`` those of the other rule. Without others every
+    name matches; without some, none does.
     """
     return alternation(some) if others else "[^/]+" if some else alternation([])
 
 
 def settings_of(section):
-    """Parameter with the settings of a specimen that a class of `core.settings` names.
+    """Parameter with those settings of a specimen that a class of `core.settings` has.
 
-    A job runs again if one of these changes: a changed friction angle or label solves nothing.
+    A job runs again only if one of these changes. So no solve runs again for a new friction angle.
     """
     return lambda wildcards: asdict(settings.read(section, RECORDS[known(wildcards)]))
 
 
+#: SHA-256 of a script and of what it imports: packages in src, and modules of workflow.
 digest = functools.cache(Code(ROOT / "src", ROOT, ROOT / "workflow").digest)
 
 
@@ -124,7 +131,7 @@ def recipe_named(name):
 
 @functools.cache
 def face_nodes(name):
-    """Most nodes of a face of a specimen."""
+    """Upper bound of the nodes of a face of a specimen."""
     if name in SCANS:
         return estimates.nodes_of_files(SCANS[name].files)
     return estimates.nodes_of_recipe(recipe_named(name))
@@ -132,13 +139,13 @@ def face_nodes(name):
 
 @functools.cache
 def window_nodes(name):
-    """Most nodes of the window of a specimen."""
+    """Upper bound of the nodes of the window of a specimen."""
     spacing = OPTIONS[name].get("spacing") if name in SCANS else recipe_named(name)["spacing"]
     return estimates.nodes_of_window(SETTINGS[name], spacing, face_nodes(name))
 
 
 def most_offsets(name):
-    """Most shear offsets of a specimen; their number under "auto" is known only later."""
+    """Upper bound of the shear offsets of a specimen; "auto" settles their number only later."""
     return len(SETTINGS[name].offsets or range(AUTOMATIC_OFFSETS + 1))
 
 

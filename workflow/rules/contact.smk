@@ -9,20 +9,21 @@ def grain(key, n):
     return [slice(start, min(start + size, n)) for start in range(0, n, size)]
 
 
-def parts_of(name):
-    """Slices of directions, of offsets and of resolutions that the contact jobs of a specimen take."""
+def blocks_of(name):
+    """Slices of the directions, offsets and resolutions of a specimen, one for each block of jobs."""
     stated = SETTINGS[name]
     return {
-        "directions": grain("directions", len(stated.contact_directions)),
+        "direction": grain("directions", len(stated.contact_directions)),
         # The scan may turn out to have fewer offsets; a job without any writes an empty part.
-        "offsets": grain("offsets", most_offsets(name)),
-        "resolutions": grain("resolutions", len(stated.resolutions)),
+        "offset": grain("offsets", most_offsets(name)),
+        "resolution": grain("resolutions", len(stated.resolutions)),
     }
 
 
-def part_of(wildcards, key):
-    """The directions, offsets or resolutions that a contact job takes."""
-    return parts_of(wildcards.specimen)[key][int(wildcards[key])]
+def block_of(wildcards, key):
+    """Slice of the directions, offsets or resolutions that a contact job takes."""
+    number = int(wildcards[f"{key}_block"])
+    return blocks_of(known(wildcards))[key][number]
 
 
 # Offset x load states of the pre-fractals at several resolutions. One job takes as many directions,
@@ -34,29 +35,29 @@ rule contact:
         specimen=rules.roughness_and_composite.output.specimens,
         joint=rules.roughness_and_composite.output.joints,
     output:
-        f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
+        f"{RESULTS}/contact/{{specimen}}/{{direction_block}}.{{offset_block}}.{{resolution_block}}.nc",
     log:
-        f"{RESULTS}/logs/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.log",
+        f"{RESULTS}/logs/contact/{{specimen}}/{{direction_block}}.{{offset_block}}.{{resolution_block}}.log",
     resources:
         mem_mb=memory("contact"),
         runtime=minutes("contact"),
     params:
         settings=settings_of(settings.ContactSettings),
         solver=SOLVER,
-        directions=lambda wc: SETTINGS[wc.specimen].contact_directions[part_of(wc, "directions")],
-        offsets=lambda wc: part_of(wc, "offsets"),
-        resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[part_of(wc, "resolutions")],
+        directions=lambda wc: SETTINGS[known(wc)].contact_directions[block_of(wc, "direction")],
+        offsets=lambda wc: block_of(wc, "offset"),
+        resolutions=lambda wc: SETTINGS[known(wc)].resolutions[block_of(wc, "resolution")],
         code=code("contact"),
     message:
-        "{wildcards.specimen}: contact states of pre-fractals, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
+        "{wildcards.specimen}: contact states of pre-fractals, block {wildcards.direction_block}.{wildcards.offset_block}.{wildcards.resolution_block}"
     script:
         "../scripts/contact.py"
 
 
 def contact_files_of(name):
     """Files of the contact jobs of a specimen."""
-    parts = {key: range(len(slices)) for key, slices in parts_of(name).items()}
-    return expand(rules.contact.output, specimen=name, **parts)
+    numbers = {f"{key}_block": range(len(slices)) for key, slices in blocks_of(name).items()}
+    return expand(rules.contact.output, specimen=name, **numbers)
 
 
 def contact_files(wildcards):
@@ -65,7 +66,7 @@ def contact_files(wildcards):
 
 
 # Realisations of a surface that the study makes (its seed and those that follow), or twins of a scan,
-# which are random surfaces with its spectrum. Their spread enters the errors of published numbers. The
+# which are random surfaces with its spectrum. Their spread enters the errors on the card and in tables. The
 # job takes about as long as `windows`, and closure_and_box_counts waits for it.
 rule ensemble:
     input:
@@ -98,10 +99,10 @@ ENSEMBLE = branch(lambda wildcards: wildcards.specimen in ENSEMBLES, then=rules.
 
 
 # Closure, dilatancy, contact area, box counts and renormalisation of the states that `contact` solved,
-# and the errors of published numbers by source. For the errors some states are solved again on finer grids
-# and in other windows. One job does all of it, since four jobs would read the same states four times and
-# cost the smoke study 5 % more processor time. `branches` are loading and unloading, `choices` is the
-# solve plan, and contact/{specimen}.nc has the states of all jobs.
+# and the errors of numbers on the card and in tables, by source. Some states are solved again: on finer
+# grids and in other windows for the errors, and on unloading for `branches`. Split into four jobs, each would
+# read all states, and config/smoke.yaml would take 5 % more processor time. `choices` says which states
+# were solved, how exactly, and why; contact/{specimen}.nc has the states of all contact jobs.
 rule closure_and_box_counts:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -161,7 +162,7 @@ rule flow:
         "../scripts/flow.py"
 
 
-# Contact of sub-windows, for the size effect. It is the longest job of a specimen and is begun early,
+# Contact of sub-windows, for the size effect. It is one of the longest jobs of a specimen and is begun early,
 # since `strength` waits for it. `strength` summarises window_states in windows/{specimen}.nc.
 rule windows:
     input:
@@ -181,13 +182,14 @@ rule windows:
         solver=SOLVER,
         code=code("windows"),
     message:
-        "{wildcards.specimen}: contact states of sub-windows, and eq. 6"
+        "{wildcards.specimen}: contact states of sub-windows, and eq. 6 of the paper"
     script:
         "../scripts/windows.py"
 
 
-# Shear strength, size laws and the comparison with the paper. This job alone reads the friction angles,
-# wall strengths and labels of specimens. It solves no contact.
+# Shear strength, size laws and the comparison with the paper. Of the jobs that compute, this one alone reads
+# friction angle, wall strength, label and group. A change of these makes the atlas and the figures again
+# too. It solves no contact.
 rule strength:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -225,7 +227,7 @@ rule strength:
         "../scripts/strength.py"
 
 
-# The same without strength, for a surface against a plane, which does not slide.
+# The same without strength, for a specimen that does not slide: a surface against a plane, or an aperture map.
 use rule strength as size_laws_against_plane with:
     output:
         windows=f"{RESULTS}/windows/{{specimen}}.nc",
@@ -265,9 +267,9 @@ rule measured:
     params:
         settings=settings_of(settings.MeasuredSettings),
         solver=SOLVER,
-        digests=lambda wc: RUN.digests(*(test.file for test in SETTINGS[known(wc)].measured)),
+        digests=lambda wc: PLAN.digests(*(test.file for test in SETTINGS[known(wc)].measured)),
         code=code("measured"),
     message:
-        "{wildcards.specimen}: laboratory tests beside computed curves"
+        "{wildcards.specimen}: tests in a real laboratory beside computed curves"
     script:
         "../scripts/measured.py"

@@ -1,18 +1,20 @@
-# Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
+# The atlas of each specimen, and figures of specimens and of the study: PNG, SVG, numbers as CSV, caption as
+# text.
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.selection import CAPPED_VARIANTS
 
-# Keys that ask for figures of the study: those of the study itself, measured contact maps, and several
-# specimens.
+# Keys that ask for figures of the study: its own keys, and one each for contact maps, for several specimens,
+# and for surfaces that the study has with and without a hardness.
 ASKED = [*config, *(["contact_maps"] if MAPS else [])]
 if len(SPECIMENS) > 1:
     ASKED.append(campaign.COMPARISON)
 if any(record["capped_variant"] for record in RECORDS.values()):
     ASKED.append(CAPPED_VARIANTS)
 STUDY_FIGURES = study_figures_of(ASKED)
-if IN_PARTS:
+if CAMPAIGN:
     STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
-#: Names of the figures of each joint (of matching or independent faces), and of each surface against a plane, that the study asks for.
+#: Names of the figures that the study asks for, of each joint (`match` stands for every kind of joint) and of
+#: each specimen that does not slide.
 OF_JOINT = campaign.drawn_of(config, SPECIMENS, "match")
 OF_FLAT = campaign.drawn_of(config, SPECIMENS, "flat")
 
@@ -20,7 +22,7 @@ OF_FLAT = campaign.drawn_of(config, SPECIMENS, "flat")
 def drawings(names, folder="{specimen}/", category="{specimen}"):
     """Files of figures, each PNG with its title for the report.
 
-    `update` keeps the old files until the new ones are complete.
+    `update` keeps the old files until the new ones are complete (see the rule `atlas`).
     """
     files = {name: f"{RESULTS}/figures/{folder}{name}" for name in names}
     endings = "svg", "csv", "txt"
@@ -44,7 +46,7 @@ def configuration_of(wildcards):
     return {"study": stated, "settings": {name: RECORDS[name]}}
 
 
-#: Names of the figures that failed, which is empty but for an error of the program.
+#: List of the figures that failed. It is empty unless the program has an error.
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
@@ -57,10 +59,10 @@ rule figures:
         rules.strength.output,
         ENSEMBLE,
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
-        [] if IN_PARTS else MAP_FILES,
+        [] if CAMPAIGN else MAP_FILES,
     output:
         *drawings(OF_JOINT),
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
+        **({"row": SPECIMEN_ROW} if CAMPAIGN else {}),
         atlas=update(SPECIMEN_ATLAS),
         undrawn=UNDRAWN,
     log:
@@ -76,22 +78,23 @@ rule figures:
         configuration=configuration_of,
         code=code("figures", "fractalcontact/figures"),
     message:
-        "{wildcards.specimen}: figures"
+        "{wildcards.specimen}: atlas and figures"
     script:
         "../scripts/figures.py"
 
 
-# The same for a surface against a plane, which does not slide: no strength, and fewer figures.
+# The same for a specimen that does not slide: no strength, and fewer figures. Memory and time are those of
+# `figures`, which are enough.
 use rule figures as figures_against_plane with:
     input:
         STAGE_PATTERNS,
         rules.size_laws_against_plane.output,
         ENSEMBLE,
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
-        [] if IN_PARTS else MAP_FILES,
+        [] if CAMPAIGN else MAP_FILES,
     output:
         *drawings(OF_FLAT),
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
+        **({"row": SPECIMEN_ROW} if CAMPAIGN else {}),
         atlas=update(SPECIMEN_ATLAS),
         undrawn=UNDRAWN,
     log:
@@ -127,8 +130,7 @@ rule study_figures:
         "../scripts/study_figures.py"
 
 
-# A figure that fails stops no other figure. This job then ends the study with the names of those that
-# failed.
+# A figure that fails stops no other figure. This job then fails, and names those that failed.
 rule all_drawn:
     input:
         undrawn=[
@@ -145,7 +147,7 @@ rule all_drawn:
         mem_mb=doubled(500),
         runtime=doubled(5),
     params:
-        logs=f"{RESULTS}/logs/figures",
+        logs=f"{RESULTS}/logs",
         code=code("all_drawn"),
     message:
         "the study: whether all figures were drawn"
@@ -177,13 +179,13 @@ def collect_everything(wildcards):
     """
     drawn = [*rules.all_drawn.output, *rules.all_drawn.input.undrawn, *all_figure_files()]
     made = [*LABORATORY, *drawn, *RESULT_PAGE]
-    if IN_PARTS:
+    if CAMPAIGN:
         return made
     return [
         *made,
         *STAGE_FILES,
         *MAP_FILES,
         *(path for name in SPECIMENS for path in contact_files_of(name)),
-        *expand(list(rules.synthetic_scan.output), specimen=set(SPECIMENS) - set(SCANS)),
+        *expand(rules.synthetic_scan.output, specimen=set(SPECIMENS) - set(SCANS)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
     ]

@@ -1,5 +1,6 @@
-# Experiments on synthetic surfaces, and speed and accuracy of the solver. Each is made where the study has
-# its key.
+# Numerical experiments on synthetic surfaces, and measurements of the solver's speed and accuracy. Their rules
+# exist in every study. A job is made only where the study has the key of the experiment, and only then do
+# input functions read that key.
 from contactlab.experiments.size_tasks import size_jobs
 from fractalcontact.study.configuration import resolve_roll_off
 
@@ -18,13 +19,13 @@ if {"speed", "stability"} & set(config):
 
     SCENES = list(problems_of(config["speed"])) if "speed" in config else []
     KINDS = list(ALL_KINDS) if "stability" in config else []
-    #: Other codes that are measured. As a parameter, one that is installed later makes the jobs run again.
+    #: Installed programs that ours is compared with: a parameter, so that jobs run again when one is installed.
     PEERS = list(installed_peers())
 #: Kinds of hard problem that one job judges.
 KINDS_A_JOB = 14
 
 
-def recipe_of(experiment):
+def keys_of(experiment):
     """Parameter with the recipe of an experiment, as the study states it."""
     return lambda wildcards: config[experiment]
 
@@ -42,7 +43,7 @@ rule roll_off:
         arguments=ROLL_OFF,
         code=code("roll_off"),
     message:
-        "laboratory: rigid dilatancy with and without a roll-off"
+        "experiment: rigid dilatancy with and without a roll-off"
     script:
         "../scripts/roll_off.py"
 
@@ -57,11 +58,11 @@ rule size_strength:
         mem_mb=doubled(4000),
         runtime=doubled(120),
     params:
-        recipe=recipe_of("size_strength"),
+        recipe=keys_of("size_strength"),
         rtol=SOLVER["rtol"],
         code=code("size_strength"),
     message:
-        "laboratory: strength of sliding joints over their side"
+        "experiment: strength of sliding joints over their side"
     script:
         "../scripts/size_strength.py"
 
@@ -76,11 +77,11 @@ rule area_slope:
         mem_mb=doubled(4000),
         runtime=doubled(60),
     params:
-        recipe=recipe_of("area_slope"),
+        recipe=keys_of("area_slope"),
         rtol=SOLVER["rtol"],
         code=code("area_slope"),
     message:
-        "laboratory: real contact area at light load"
+        "experiment: real contact area at light load"
     script:
         "../scripts/area_slope.py"
 
@@ -95,10 +96,10 @@ rule estimator_bias:
         mem_mb=doubled(4000),
         runtime=doubled(60),
     params:
-        recipe=recipe_of("estimator_bias"),
+        recipe=keys_of("estimator_bias"),
         code=code("estimator_bias"),
     message:
-        "laboratory: bias of the estimators of Delta_g"
+        "experiment: bias of the estimators of Delta_g"
     script:
         "../scripts/estimator_bias.py"
 
@@ -109,7 +110,8 @@ def memory_of_part(wildcards):
     return estimates.memory("size_effect_part", side**2)
 
 
-# Surfaces of one class a job, which takes minutes; small classes share a job. The order does not matter.
+# Solves of surfaces of one class (arm, H, size and cut-off of the spectrum), which take minutes. Small classes
+# share a job.
 rule size_effect_part:
     output:
         f"{RESULTS}/size_effect_parts/{{part}}.nc",
@@ -127,7 +129,7 @@ rule size_effect_part:
         rtol=SOLVER["rtol"],
         code=code("size_effect_part"),
     message:
-        "laboratory: size effect, surfaces {wildcards.part}"
+        "experiment: size effect, surfaces {wildcards.part}"
     script:
         "../scripts/size_effect_part.py"
 
@@ -143,10 +145,10 @@ rule size_effect:
         mem_mb=doubled(2000),
         runtime=doubled(20),
     params:
-        recipe=recipe_of("size_effect"),
+        recipe=keys_of("size_effect"),
         code=code("size_effect"),
     message:
-        "laboratory: which exponent carries the size effect"
+        "experiment: which exponent carries the size effect"
     script:
         "../scripts/size_effect.py"
 
@@ -164,11 +166,11 @@ rule speed:
         mem_mb=doubled(4000),
         runtime=doubled(30),
     params:
-        recipe=recipe_of("speed"),
+        recipe=keys_of("speed"),
         peers=PEERS,
         code=code("speed"),
     message:
-        "laboratory: error against time, {wildcards.scene}"
+        "experiment: error against time, {wildcards.scene}"
     script:
         "../scripts/speed.py"
 
@@ -187,7 +189,7 @@ rule speed_growth:
         error=lambda wildcards: config["speed"]["error"],
         code=code("speed_growth"),
     message:
-        "laboratory: time and memory of the solvers over sizes"
+        "experiment: time and memory of the solvers over sizes"
     script:
         "../scripts/speed_growth.py"
 
@@ -203,10 +205,10 @@ rule convergence:
         mem_mb=doubled(1500),
         runtime=doubled(60),
     params:
-        recipe=recipe_of("convergence"),
+        recipe=keys_of("convergence"),
         code=code("convergence"),
     message:
-        "laboratory: error against spacing, {wildcards.problem}"
+        "experiment: error against spacing, {wildcards.problem}"
     script:
         "../scripts/convergence.py"
 
@@ -227,7 +229,7 @@ rule stability_part:
         peers=PEERS,
         code=code("stability_part"),
     message:
-        "laboratory: verdicts on solvers, kinds of problem from {wildcards.first}"
+        "experiment: verdicts on solvers, kinds of problem from {wildcards.first}"
     script:
         "../scripts/stability_part.py"
 
@@ -245,7 +247,7 @@ rule stability:
     params:
         code=code("stability"),
     message:
-        "laboratory: verdicts on solvers"
+        "experiment: verdicts on solvers"
     script:
         "../scripts/stability.py"
 
@@ -262,7 +264,7 @@ rule elimination:
         draws=lambda wildcards: config["stability"]["elimination"],
         code=code("elimination"),
     message:
-        "laboratory: whether dropping points alone reaches the right contact"
+        "experiment: whether dropping points alone reaches the right contact"
     script:
         "../scripts/elimination.py"
 

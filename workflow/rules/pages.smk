@@ -14,9 +14,8 @@ def with_endings(path, endings):
 rule explorer:
     input:
         rules.atlas.output[0],
-        expand(SPECIMEN_ATLAS, specimen=EXPLORED) if IN_PARTS else [],
+        expand(SPECIMEN_ATLAS, specimen=EXPLORED) if CAMPAIGN else [],
     output:
-        # `update` keeps the page until the new one takes its place.
         update(f"{RESULTS}/explorer.html"),
     log:
         f"{RESULTS}/logs/explorer.log",
@@ -39,14 +38,14 @@ rule explorer:
 rule card_and_page:
     input:
         SPECIMEN_ATLAS,
-        # Captions stand for the pictures, which no page reads: one job makes both.
+        # The page reads captions only. The job that wrote them made the pictures too.
         lambda wildcards: figure_files(known(wildcards), ["txt"]),
         # Aperture maps take the gaps from the contact jobs, because the atlas rounds them.
-        lambda wildcards: [] if IN_PARTS else contact_files_of(known(wildcards)),
+        lambda wildcards: [] if CAMPAIGN else contact_files_of(known(wildcards)),
     output:
         update(f"{RESULTS}/{page_files.SPECIMEN_PAGE}"),
         update(with_endings(page_files.CARD, page_files.CARD_ENDINGS)),
-        update([] if IN_PARTS else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
+        update([] if CAMPAIGN else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
         f"{RESULTS}/logs/card_and_page/{{specimen}}.log",
     resources:
@@ -55,7 +54,7 @@ rule card_and_page:
     params:
         # The specimen itself, if the explorer shows it. Others would change this page.
         explored=lambda wildcards: [name for name in EXPLORED if name == wildcards.specimen],
-        apertures=not IN_PARTS,
+        apertures=not CAMPAIGN,
         code=code("card_and_page", "fractalcontact/cards", "fractalcontact/pages"),
     message:
         "{wildcards.specimen}: card and page"
@@ -63,7 +62,7 @@ rule card_and_page:
         "../scripts/card_and_page.py"
 
 
-PAGES = expand(list(rules.card_and_page.output), specimen=SPECIMENS)
+PAGES = expand(rules.card_and_page.output, specimen=SPECIMENS)
 # There is no explorer of measured contact maps alone, nor of a campaign that names no specimen for it.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
 INDEX = [f"{RESULTS}/{name}" for name in page_files.FILES]
@@ -73,7 +72,7 @@ RESULT_PAGE = [*INDEX, *EXPLORER, *PAGES]
 rule result_page:
     input:
         rules.atlas.output[0],
-        expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else [],
+        expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if CAMPAIGN else [],
         lambda wildcards: all_figure_files(["txt"]),
         # The first screen of the index takes its numbers from the cards.
         PAGES,
@@ -97,6 +96,6 @@ rule result_page:
 # Target of `make report`: the pages, and everything that they are made of.
 rule pages:
     input:
-        lambda wildcards: RESULT_PAGE,
+        RESULT_PAGE,
     message:
         "the result page of the study"

@@ -33,7 +33,7 @@ def begin():
         # The user alone may let specimens go, not the file of a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
-        RUN.save()
+        PLAN.save()
     except InputError as error:
         raise WorkflowError(str(error))
 
@@ -41,7 +41,7 @@ def begin():
 def end():
     """Write checksums and the RO-Crate of the results, whether or not the run succeeded."""
     checksums.write_manifest(RESULTS)
-    scans = {path: digest for path, digest in RUN.all_digests().items() if digest}
+    scans = {path: digest for path, digest in PLAN.all_digests().items() if digest}
     crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
 
 
@@ -50,14 +50,15 @@ WORKFLOW = crate.Workflow(
     folder=ROOT,
     main="Snakefile",
     parts=(
-        *(
-            "workflow/*.py",
-            "workflow/rules/*.smk",
-            "workflow/scripts/*.py",
-            "workflow/engine/**/*.py",
-            "config/schema/*.json",
-        ),
-        *("environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
+        "workflow/*.py",
+        "workflow/rules/*.smk",
+        "workflow/scripts/*.py",
+        "workflow/engine/**/*.py",
+        "config/schema/*.json",
+        "environment.yml",
+        "requirements.lock",
+        "CITATION.cff",
+        "LICENSE",
     ),
     language="Snakemake",
     url="https://snakemake.github.io",

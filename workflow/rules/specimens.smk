@@ -33,7 +33,7 @@ def scan_files(wildcards):
 
 def scan_digests(wildcards):
     """SHA-256 of these files; none for a surface that the study makes itself."""
-    return RUN.digests(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
+    return PLAN.digests(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
 
 
 def reading_options(wildcards):
@@ -103,7 +103,8 @@ rule contact_map:
 REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
 
-# A scan that the study leaves out with --keep-going. The job fails with the error; other jobs go on.
+# One job for each scan that is left out with --keep-going. It fails with what is wrong with the scan, and its
+# output is never made; other jobs go on.
 rule refused:
     output:
         f"{RESULTS}/refused/{{refused}}.txt",
