@@ -306,13 +306,18 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
         return spread, 1, effective
     of_windows = np.full((len(composites) + 1, *values.shape), np.nan)
     of_windows[0] = values
-    for i, (whole, mated) in enumerate(composites, 1):
+    # The mean plane of each window is its datum, as for registrations: the highest node of its
+    # mated faces differs between windows by more than their gaps do.
+    separation = list(BUDGET_QUANTITIES).index("separation")
+    of_windows[0, separation] += curve.reference - curve.composite.mean()
+    for i, whole in enumerate(composites, 1):
         composite = prefractal(whole, curve.resolution)
+        datum = float(composite.max()), float(composite.mean())
         states = load_steps(
             composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
         )
         for place, state in zip(places, states, strict=True):
-            of_windows[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
+            of_windows[i, :, place] = budget_values(state, *datum, limits)
     spread[:, places] = window_spread(of_windows[:, :, places], effective)
     return spread, len(of_windows), effective
 
