@@ -121,10 +121,10 @@ def error_budget(
     ``loading`` is in the first direction of contact, at the offset of the contact maps alone;
     ``curves`` and ``domains`` are the stages ``closure`` and ``domains``. ``registration_spread``
     has by quantity half-widths (normal_force,) of the spread over registrations of two scanned
-    faces that are statistically as good, in the quantity's unit; ``scan_spread`` likewise over
-    other fair readings of two scanned faces, a source "scan" of this surface. The stage
-    ``ensemble``, twins of a scan or realisations of an embedded specimen, is a source of its own,
-    in place of counting and windows in the total of the population.
+    faces that are statistically as good, in the quantity's unit; ``scan_spread`` likewise has the
+    errors of two scans, a source "scan" of this surface, which may hold those of registration. The
+    stage ``ensemble``, twins of a scan or realisations of an embedded specimen, is a source of its
+    own, in place of counting and windows in the total of the population.
 
     The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
     :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force). Raises
@@ -159,8 +159,9 @@ def error_budget(
     errors = {source: errors[source] for source in SOURCES if source in errors}
     reasons = _reasons(curve, errors, refinement, effective, registration_spread is not None)
     budget = _budget(curve, values, errors, refinement, reasons, (n_windows, effective))
-    sampling = _seated_sampling(curve, ensemble, registration_spread)
-    budget = with_derived(budget.assign(hardest), curve, sampling)
+    sampling = _seated_sampling(curve, ensemble, registration_spread, scan_spread)
+    of_scan = None if scan_spread is None else scan_spread.get("seated_closure", np.nan)
+    budget = with_derived(budget.assign(hardest), curve, sampling, of_scan)
     if ensemble is not None and TWINS in errors:
         words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
         budget["within_twins"] = (_ALL, position_in_band(curve, ensemble), words)
@@ -186,7 +187,10 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
             sampling = np.where(finite, errors[members], sampling)
             largest = np.where(finite, members, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
-        sampling = np.hypot(sampling, errors["registration"])
+        # What the source scan holds already is not counted twice.
+        scan = np.nan_to_num(errors.get("scan", 0.0))
+        beyond = np.sqrt(np.maximum(errors["registration"] ** 2 - scan**2, 0.0))
+        sampling = np.hypot(sampling, beyond)
     of_population = np.hypot(total, sampling)
     absolute = np.isin(list(BUDGET_QUANTITIES), ABSOLUTE)
     size = np.abs(np.where((values == 0) | absolute[:, np.newaxis], np.nan, values))
@@ -322,7 +326,7 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
     return spread, len(of_windows), effective
 
 
-def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
+def _seated_sampling(curve, ensemble, registration, scan) -> np.ndarray:
     """Sampling and registration error of the closure from the seat (normal_force), mm.
 
     NaN without an ensemble: neither counts nor windows tell how much two separations share.
@@ -332,7 +336,9 @@ def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
     scale = curve.curve["seated_closure"].values[np.newaxis]
     (half,) = over_loads(curve.forces, seated_spread(curve, ensemble)[np.newaxis], scale)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
-        half = np.hypot(half, (registration or {}).get("seated_closure", np.nan))
+        moved = (registration or {}).get("seated_closure", np.nan)
+        beyond = np.square(moved) - np.nan_to_num((scan or {}).get("seated_closure", 0.0)) ** 2
+        half = np.hypot(half, np.sqrt(np.maximum(beyond, 0.0)))
     return half
 
 
