@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core.labels import OPPOSITE, printable
-from ..core.limits import JRC_SAMPLING
+from ..core.limits import ALL_CRUSH, JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, read, read_at, row_of
@@ -29,9 +29,6 @@ STRENGTH_RULES = {
 }
 #: Rms slope of the gap above which the local cubic law is not valid.
 _STEEP_GAP = 1.0
-#: Relative difference of the raw contact area from that of contacts that all crush: 0.01 to 0.02
-#: where 97 % of the nodes bear the hardness.
-_SAME = 0.03
 
 
 class Fact(NamedTuple):
@@ -108,7 +105,7 @@ def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
             f"contact {at}",
             "contact_fraction",
             "%",
-            _ALL_CRUSH if abs(crushed / pressure - 1) < _SAME else "",
+            _ALL_CRUSH if abs(crushed / pressure - 1) < ALL_CRUSH else "",
         ),
     ]
     if subject.direction != "none":
