@@ -42,9 +42,9 @@ def closure_constants(
     Notes
     -----
     Every variant is seated and fitted as this one is: from its own lightest load that fits take.
-    The interval is the root sum of squares of that of the fit and of the larger of two: the
-    distance of the farthest reading, and the 95 % spread over registrations. Where other readings
-    exist and none can be fitted, the interval is unbounded.
+    To the interval of the fit the larger of two is added: the distance of the farthest reading, and
+    the 95 % spread over registrations. Where other readings exist and none can be fitted, the
+    interval is unbounded.
     """
     pressure = curve["nominal_pressure"].values
     apart = {
@@ -65,8 +65,8 @@ def closure_constants(
         half = 0.0 if np.isnan(apart[name]) else apart[name]
         wider = Estimate(
             value,
-            np.maximum(value - np.hypot(value - low, half), 0.0),
-            value + np.hypot(high - value, half),
+            np.maximum(low - half, 0.0),
+            high + half,
         )
         variables |= wider.variables(name, (), unit, f"{words}, {_HOLDS}")
     return variables

@@ -66,11 +66,11 @@ def with_derived(
     95 %, ``of_scan`` the error of two scans, both in mm. NaN where an error is not known.
 
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
-    which is exact: its error is the root sum of squares of theirs, but for that of two scans, which
-    both separations share and which is its own. First touch, which decides the error of the closure
-    from there, is in neither. At the seat it is 0 by definition. What moves the mean planes apart
-    widens the gap by as much. The stiffness at a pressure has the relative error of the
-    neighbouring states, and none beyond states whose error is known.
+    which is exact: its error is the root sum of squares of theirs, to which that of two scans is
+    added, which both separations share and which is its own. First touch, which decides the error
+    of the closure from there, is in neither. At the seat it is 0 by definition. What moves the mean
+    planes apart widens the gap by as much. The stiffness at a pressure has the relative error of
+    the neighbouring states, and none beyond states whose error is known.
     """
     states = curve.curve
     separation = budget["total"].sel(quantity="separation").values
@@ -79,7 +79,7 @@ def with_derived(
     own = _without_scan(budget, separation)
     at_seat = own[seat][0] if seat.any() else np.nan
     scan = 0.0 if of_scan is None else np.nan_to_num(of_scan)
-    of_both = np.where(seat, 0.0, np.hypot(np.hypot(own, at_seat), scan))
+    of_both = np.where(seat, 0.0, np.hypot(own, at_seat) + scan)
     stiffness = states["reference_stiffness"].values
     pressure = states["nominal_pressure"].values
     totals = [
@@ -103,4 +103,4 @@ def _without_scan(budget: xr.Dataset, separation: np.ndarray) -> np.ndarray:
     if "source" not in budget.coords or "scan" not in budget["source"]:
         return separation
     scan = budget["error"].sel(quantity="separation", source="scan").values
-    return np.sqrt(np.maximum(separation**2 - np.nan_to_num(scan) ** 2, 0.0))
+    return separation - np.nan_to_num(scan)

@@ -131,7 +131,8 @@ def error_budget(
     `NotConverged` if a state on a finer grid, or of another window, could not be verified.
 
     All errors are half-widths of intervals of about 95 %. The sources are independent: totals are
-    root sums of squares. A spread over windows holds that of counting: only the larger enters.
+    root sums of squares, but for the scan: a distance of readings is no chance and is added. A
+    spread over windows holds that of counting: only the larger enters.
     """
     finest = int(curves["resolution"].min())
     curve = map_curve(loading, curves, domains, finest)
@@ -177,7 +178,9 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
         # No other reading of Delta_sigma is known. A quantity that another reading lacks under
         # some loads has no total there.
         is_read = np.isfinite(errors["scan"]).any(axis=1, keepdims=True)
-        total = np.hypot(total, np.where(is_read, errors["scan"], 0.0))
+        # A distance of readings is no chance: where another one is right, this one is off by all of
+        # it and by its other errors.
+        total = total + np.where(is_read, errors["scan"], 0.0)
         of_surface = (*OF_SURFACE, "scan")
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)

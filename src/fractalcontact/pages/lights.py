@@ -144,7 +144,7 @@ def _without_scan(subject):
     """Relative error of the closure from the seat without the scans', which no grid changes."""
     budget, closure = (subject.state(stage) for stage in ("error_budget", "closure"))
     total, scan = (float(budget[f"seated_closure_{of}"]) for of in ("total", "scan"))
-    return math.sqrt(max(total**2 - scan**2, 0.0)) / float(closure["seated_closure"])
+    return (total - scan) / float(closure["seated_closure"])
 
 
 def _finer(subject, excess, order):
