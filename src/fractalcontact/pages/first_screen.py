@@ -16,7 +16,8 @@ from .lights import lights_of, trust_of
 from .summary import lengths_of
 
 #: Intervals as the register names them, in words.
-_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
+_ALONE = {"solver": " solver error alone"}
+_OF_SURFACE = "all errors of this surface"
 #: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
@@ -27,6 +28,13 @@ STRENGTH_RULES = {
     "barton_strength": "Barton",
     "barton_scaled_strength": "Barton and Bandis",
 }
+#: What the rules are, a line each for those computed here and those measured by others.
+_EXPLAINED = (
+    "dilatancy and contact are computed for this window, where nothing breaks: friction angle plus "
+    "the steepest rise of the faces, or plus the dips that bear the force",
+    "Barton, and Barton and Bandis with its change with length, were measured in shear tests, from "
+    "JRC of the face, wall strength and friction angle",
+)
 #: Rms slope of the gap above which the local cubic law is not valid.
 _STEEP_GAP = 1.0
 
@@ -45,7 +53,7 @@ def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
         "name": subject.name,
         "label": printable(subject.label),
         "synthetic": synthetic,
-        "offset": offset_words(subject),
+        "offset": offset_words(subject, synthetic),
         "model": model_of(subject),
         "window": window_words(subject),
         "facts": facts_of(subject, synthetic),
@@ -81,12 +89,15 @@ def window_words(subject: Subject) -> str:
     return f"window {sides}, spacing {with_unit(lengths['spacing'], 'mm')}{chosen}"
 
 
-def offset_words(subject: Subject) -> str:
-    """Offset of a joint in words."""
+def offset_words(subject: Subject, synthetic: bool = False) -> str:
+    """Offset of a joint in words; that of one scanned face is assumed."""
     if subject.direction == "none":
         return "without sliding"
     if subject.offset:
-        return f"slid by {with_unit(subject.offset, 'mm')} towards {subject.direction}"
+        words = f"{with_unit(subject.offset, 'mm')} towards {subject.direction}"
+        # Nobody measured how far a face that was scanned alone had slid.
+        one_face = subject["specimens"].attrs["opposite"] == "match" and not synthetic
+        return f"assumed offset {words}" if one_face else f"slid by {words}"
     faces = OPPOSITE[subject["specimens"].attrs["opposite"]]
     return "in the mated position" if faces.startswith("one") else "at no offset"
 
@@ -127,10 +138,16 @@ class _Block:
 
     def fact(self, title: str, name: str, unit: str, beside: str = "") -> Fact:
         """Number of a row; below it its interval, the whole joint's and that of harder contacts."""
-        return self.written(title, self.number(name), unit, beside, row_of(name).interval)
+        return self.written(title, self.number(name), unit, beside, row_of(name).interval, name)
 
     def written(
-        self, title: str, number: Number, unit: str, beside: str, interval: str = ""
+        self,
+        title: str,
+        number: Number,
+        unit: str,
+        beside: str,
+        interval: str = "",
+        name: str = "",
     ) -> Fact:
         """Number in words and what stands below it; a dash with the reason where it is missing."""
         if number.missing:
@@ -141,8 +158,14 @@ class _Block:
         if not number.determined:
             reason = str(number.estimate.reason) or number.remark
             return Fact(title, "undetermined", list(filter(None, (f"{words}: {reason}", beside))))
-        ends = _ends(number, size, _ALONE.get(interval, ""))
-        notes = ends, self._of_joint(number, size), self._harder(number, size), beside
+        ends = _ends(number, size, self._holds(interval))
+        notes = (
+            ends,
+            self._of_joint(number, size),
+            self._harder(number, size),
+            self._at_offsets(name, size, shown),
+            beside,
+        )
         return Fact(title, words, list(filter(None, notes)))
 
     def closure(self, title: str) -> Fact:
@@ -182,6 +205,7 @@ class _Block:
             if law.items() <= number.at.items():
                 step = with_unit(number.at["step"], "mm")
                 by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
+                by = f"whole face, brackets: 95 % of its profiles; {by}"
                 return self.written("JRC", number, "1", by)
         return Fact("JRC", "–", ["no profile is long enough"])
 
@@ -199,8 +223,22 @@ class _Block:
         lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
         lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
+        lines += [text for text in _EXPLAINED if len(rules) > 1]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
         return Fact(title, f"{' to '.join(ends)} MPa", lines)
+
+    def _holds(self, interval: str) -> str:
+        """Clause on what an interval holds: the errors of scans where there are other readings."""
+        if interval != _OF_SURFACE:
+            return _ALONE.get(interval, "")
+        if self.synthetic:
+            return " this surface"
+        sources = self.subject["error_budget"]["source"].values
+        return (
+            " with the errors of both scans"
+            if "scan" in sources
+            else " of these heights as gridded"
+        )
 
     def _of_joint(self, number: Number, size: float) -> str:
         """Half-width for the whole joint; larger than the number, it says how little is known."""
@@ -212,6 +250,22 @@ class _Block:
         solved = self.synthetic or self.subject.settings.get("twins")
         remedy = "" if solved else "; 'twins: 20' estimates it from the spectrum"
         return f"± {half} for the whole joint: more than the number itself{remedy}"
+
+    def _at_offsets(self, name: str, size: float, shown: str) -> str:
+        """Range of a number over the other offsets of one scanned face, whose own is assumed."""
+        specimen, reported = self.subject["specimens"], self.subject.reported
+        if not name or self.synthetic or specimen.attrs["opposite"] != "match":
+            return ""
+        row = row_of(name)
+        curve = reported.curves(self.subject[row.stage])[row.variable]
+        values = size * curve.sel(normal_force=reported.force, method="nearest")
+        others = values.where((values["offset"] > 0) & (values["offset"] != reported.offset))
+        others = others.dropna("offset")
+        if not others.size:
+            return ""
+        ends = " to ".join(dict.fromkeys(short(float(of)) for of in (others.min(), others.max())))
+        offsets = [short(float(others["offset"][end])) for end in (0, -1)]
+        return f"{ends}{shown} at other offsets ({' to '.join(dict.fromkeys(offsets))} mm)"
 
     def _harder(self, number: Number, size: float) -> str:
         """A number for the largest hardness of single contacts; empty where contact is elastic."""

@@ -29,6 +29,9 @@ _BESIDE = {
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),
     "branch": ("branch", "branch", "1"),
+    "face_direction": ("direction", "face_direction", "1"),
+    "block_length": ("length", "block_length", "mm"),
+    "rule": ("rule", "rule", "1"),
     **{f"{kind}_test": ("test", f"{kind}_test", "1") for kind in TEST_COLUMNS},
 }
 #: Units of the labels of a number.

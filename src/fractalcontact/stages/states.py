@@ -18,6 +18,7 @@ from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.closure_constants import closure_constants
 from ..error_budget.error_budget import error_budget
+from ..error_budget.slid_variants import slid_variants
 from ..joint.overlap import load_warning, node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
@@ -121,8 +122,11 @@ def state_stages(
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
     joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    if joint.slides:
+        variants = slid_variants(joint, reported.force)
+        stages["dilatancy"] = stages["dilatancy"].assign(variants)
     loading = joint.at_map_offset()
-    budget = _budget(loading, stages, reported, ensemble)
+    budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
         "branches": joint_branches(loading, stages["closure"], mapped),
@@ -131,11 +135,11 @@ def state_stages(
     }
 
 
-def _budget(
+def reported_budget(
     loading: JointLoading[StateSettings],
     stages: Mapping[str, xr.Dataset],
     reported: Reported,
-    ensemble: xr.Dataset | None,
+    ensemble: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Error budget at the reported state, with the errors of two scans where there are two.
 
