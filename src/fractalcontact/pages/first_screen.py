@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.determined import decided_by_scan
 from ..core.labels import OPPOSITE, printable
 from ..core.limits import ALL_CRUSH, JRC_SAMPLING
 from ..core.subject import Subject
@@ -18,6 +19,8 @@ from .summary import lengths_of
 #: Intervals as the register names them, in words.
 _ALONE = {"solver": " solver error alone"}
 _OF_SURFACE = "all errors of this surface"
+#: Relative difference of pressures that are one.
+_ROUNDING = 1e-9
 #: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
@@ -172,8 +175,22 @@ class _Block:
         """Closure from the seat; from first touch under a load below the seat."""
         if _value(self.number("seated_closure")) > 0:
             seat = with_unit(self.number("seating_pressure").value, "MPa")
-            return self.fact(title, "seated_closure", "mm", f"counted from {seat}")
+            words = f"counted from {seat}{self._why_no_lighter_seat()}"
+            return self.fact(title, "seated_closure", "mm", words)
         return self.fact(title, "interface_closure", "mm", "counted from first touch")
+
+    def _why_no_lighter_seat(self) -> str:
+        """Clause where suspicious cells carry loads that would seat the joint; "" if not."""
+        states = self.subject.states("closure")
+        pressure = states["nominal_pressure"].values
+        lighter = pressure < float(states["seating_pressure"]) * (1 - _ROUNDING)
+        lighter &= pressure >= self.subject.settings["seating_pressure"] * (1 - _ROUNDING)
+        if not decided_by_scan(states["suspect_load_share"].values[lighter]).any():
+            return ""
+        words = ", as suspicious cells of the scan carry most of lighter loads"
+        if self.subject["specimens"].attrs.get("outliers") == "fill":
+            return words
+        return f"{words}; 'outliers: fill' in its sidecar shows what that changes"
 
     def flow(self) -> str:
         """Hydraulic aperture in words, and what limits it."""

@@ -170,8 +170,9 @@ _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 class Trust(NamedTuple):
     """Trust in a specimen.
 
-    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights, the
-    model's before others, and which others there are; ``help`` is what would help of all these.
+    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights,
+    errors of two scans before the model's and others, and which others there are; ``help`` is what
+    would help of all these.
     """
 
     word: str
@@ -185,7 +186,9 @@ def trust_of(lights: Sequence[Light]) -> Trust:
     if worst == GOOD:
         return Trust(_TRUST[GOOD], "every light that applies is good", "")
     of_worst = [light for light in lights if light.word == worst]
-    first, *others = deciding = sorted(of_worst, key=lambda light: light.key != "model")
+    first, *others = deciding = sorted(
+        of_worst, key=lambda light: (light.help not in (MARKS, FILLED), light.key != "model")
+    )
     reason = f"{first.title}: {first.reason}"
     if others:
         alike = "partly good" if worst == IN_PART else worst
