@@ -389,16 +389,18 @@ def _over_pressures(jrc: Estimate, wall: float, angle: float, pressure: np.ndarr
 def _by_bandis(jrc: Estimate, material: Friction, length: float, pressure: np.ndarray) -> Estimate:
     """Strength by Barton's law with JRC_n and JCS_n, with the ends of the JRC.
 
-    The smaller JRC_n is not always that of the smaller JRC: the ends are sorted.
+    The smaller JRC_n is not always that of the smaller JRC: the ends are sorted. An end whose JRC_n
+    is beyond Barton's scale has the largest JRC of that scale.
     """
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
-    value, low, high = (
-        barton_strength(pressure, angle, *_scaled(Estimate(end), wall, length)[:2])
-        for end in jrc.ends
-    )
-    return Estimate(
-        value, np.minimum(value, np.minimum(low, high)), np.maximum(value, np.maximum(low, high))
-    )
+    value = barton_strength(pressure, angle, *_scaled(jrc, wall, length)[:2])
+    ends = []
+    for end in jrc.ends[1:]:
+        scaled_jrc, scaled_wall = scaled_joint(end, wall, length)
+        on_scale = np.minimum(scaled_jrc, JRC_RANGE[1])
+        ends.append(barton_strength(pressure, angle, on_scale, scaled_wall))
+    low, high = np.min([value, *ends], axis=0), np.max([value, *ends], axis=0)
+    return Estimate(value, low, high)
 
 
 def _scaled(jrc: Estimate, wall: float, length: float) -> tuple[float, float, str]:
