@@ -23,7 +23,7 @@ from spreadsheets import FORMULA, formulas_in
 from fractalcontact.core.claims import claims_of
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
-from fractalcontact.core.text import with_unit
+from fractalcontact.core.text import short, with_unit
 from fractalcontact.core.verdicts import TOO_WIDE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
@@ -500,6 +500,52 @@ def test_a_number_that_suspicious_cells_decide_is_undetermined_and_says_why(fact
     fact = facts_with(mean_gap=of(0.1, 0.09, 0.11, determined=False))[2]
     assert fact.words == "undetermined"
     assert fact.notes[0] == f"0.1 mm: {BY_SCAN}"
+
+
+def changed(subject, seat=None, share=None, **attrs):
+    """A specimen with other attributes, another seat (MPa) and force on suspicious cells."""
+    closure = subject["closure"].copy()
+    if seat is not None:
+        closure["seating_pressure"] = xr.full_like(closure["seating_pressure"], seat)
+        closure["suspect_load_share"] = xr.full_like(closure["suspect_load_share"], share)
+    specimen = subject["specimens"].assign_attrs(attrs)
+    stages = {**subject.stages, "closure": closure, "specimens": specimen}
+    settings = subject.settings | {"seating_pressure": 0.0}
+    return replace(subject, stages=stages, settings=settings)
+
+
+def test_the_first_screen_says_why_the_seat_is_no_lighter_load(atlas):
+    subject = Subject.of(atlas, "pair")
+    heaviest = float(subject["closure"]["nominal_pressure"][-1])
+    why = "as suspicious cells of the scan carry most of lighter loads"
+    for share, outliers, words in (
+        (0.9, "keep", f", {why}; 'outliers: fill' in its sidecar shows what that changes"),
+        (0.9, "fill", f", {why}"),
+        (0.1, "keep", ""),
+    ):
+        block = first_screen._Block(changed(subject, heaviest, share, outliers=outliers), False)
+        assert block._why_no_lighter_seat() == words
+    lightest = float(subject["closure"]["nominal_pressure"][0])
+    assert first_screen._Block(changed(subject, lightest, 0.9), False)._why_no_lighter_seat() == ""
+
+
+def test_one_face_has_an_assumed_offset_and_the_range_over_others(atlas):
+    pair = Subject.of(atlas, "pair")
+    one = changed(pair, opposite="match")
+    gaps = pair.reported.curves(pair["closure"])["mean_gap"].sel(normal_force=pair.reported.force)
+    others = gaps.where((gaps["offset"] > 0) & (gaps["offset"] != pair.offset), drop=True)
+    assert others.size
+    words = first_screen._Block(one, False)._at_offsets("mean_gap", 1.0, " mm")
+    for end in (others.min(), others.max()):
+        assert short(float(end)) in words
+    assert words.endswith(" mm)")
+    # Nothing is assumed of a pair, nor of a face that the study generates.
+    assert first_screen._Block(pair, False)._at_offsets("mean_gap", 1.0, " mm") == ""
+    assert first_screen._Block(one, True)._at_offsets("mean_gap", 1.0, " mm") == ""
+    closure = one["closure"].assign(reported_offset=float(others["offset"][0]))
+    slid = replace(one, stages={**one.stages, "closure": closure})
+    assert first_screen.offset_words(slid).startswith("assumed offset ")
+    assert first_screen.offset_words(slid, True).startswith("slid by ")
 
 
 def test_the_strength_is_the_range_of_its_rules(facts_with):

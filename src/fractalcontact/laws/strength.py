@@ -383,7 +383,8 @@ def _by_barton(
 
 def _over_pressures(jrc: Estimate, wall: float, angle: float, pressure: np.ndarray) -> Estimate:
     """Strength by Barton's law over pressures, MPa, with the ends of the JRC."""
-    return Estimate(*(barton_strength(pressure, angle, end, wall) for end in jrc.ends))
+    value, low, high = (np.asarray(barton_strength(pressure, angle, end, wall)) for end in jrc.ends)
+    return Estimate(value, low, high)
 
 
 def _by_bandis(jrc: Estimate, material: Friction, length: float, pressure: np.ndarray) -> Estimate:
@@ -393,12 +394,12 @@ def _by_bandis(jrc: Estimate, material: Friction, length: float, pressure: np.nd
     is beyond Barton's scale has the largest JRC of that scale.
     """
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
-    value = barton_strength(pressure, angle, *_scaled(jrc, wall, length)[:2])
+    value = np.asarray(barton_strength(pressure, angle, *_scaled(jrc, wall, length)[:2]))
     ends = []
     for end in jrc.ends[1:]:
         scaled_jrc, scaled_wall = scaled_joint(end, wall, length)
         on_scale = np.minimum(scaled_jrc, JRC_RANGE[1])
-        ends.append(barton_strength(pressure, angle, on_scale, scaled_wall))
+        ends.append(np.asarray(barton_strength(pressure, angle, on_scale, scaled_wall)))
     low, high = np.min([value, *ends], axis=0), np.max([value, *ends], axis=0)
     return Estimate(value, low, high)
 
@@ -444,7 +445,6 @@ def _of_blocks(
 def _rose(of_face: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Roughness of the whole face in four directions, from that of each."""
     names = {
-        "face_z2": "z2_of_law",
         "face_jrc": "jrc_of_law",
         "face_grasselli": "grasselli_roughness",
     }

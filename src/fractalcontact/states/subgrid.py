@@ -129,7 +129,8 @@ def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.nda
 def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
     """True of a state that fits take, as :func:`joint.overlap.on_sound_cells` of stored ones."""
     enough = np.count_nonzero(state.in_contact) >= RESOLVED_NODES
-    return enough and not decided_by_scan(suspect_load_share(state.pressure, suspicious))
+    share = suspect_load_share(state.pressure, suspicious)
+    return bool(enough and not decided_by_scan(share))
 
 
 def state_quantities(
