@@ -39,7 +39,7 @@ from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import overlap_words, suspect_words
 from fractalcontact.scan.read import read_faces
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.registration_spread import registration_spread
+from fractalcontact.states.registration_spread import registration_spread, registration_values
 from fractalcontact.states.states import combine, forces_of
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.checks import read_sidecar
@@ -135,7 +135,8 @@ def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict
             values["k_ni"] * highest / hyperbolas[1].lowest,
         ),
     }
-    of_motion = registration_spread(loading, [settings.map_load]) or {}
+    at_load = registration_values(loading, [settings.map_load])
+    of_motion = registration_spread(at_load, np.array([force]), np.nan) or {}
     errors = {}
     for name, value in values.items():
         moved = float(of_motion.get(name, [0.0])[0])

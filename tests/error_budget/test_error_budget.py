@@ -54,6 +54,7 @@ STUDY = {
         "one": {},
         "small": {"window": "7.2 mm", "resolutions": [1]},
         "two": {"window": "7.2 mm", "resolutions": [1]},
+        "pair": {"window": "3.2 mm", "resolutions": [1]},
         "flat": {"opposite": "flat", "window": "3.2 mm"},
         "crushing": {"material": "weak"},
     },
@@ -74,7 +75,10 @@ def budget_of(name, accuracy=None, **more):
     upper = lower + self_affine((80, 80), SPACING, 0.6, rms=0.02, seed=6) + 0.3
     settings = resolve_settings(STUDY, name, {}, "budget")
     specimen = make_specimen(
-        scan(lower), scan(upper) if name == "two" else None, name=name, **window_arguments(settings)
+        scan(lower),
+        scan(upper) if name in ("two", "pair") else None,
+        name=name,
+        **window_arguments(settings),
     )
     solver = solver_settings({"accuracy": accuracy} if accuracy else {}, "budget")
     joint = describe_joint(specimen, settings)
@@ -383,7 +387,8 @@ def test_other_readings_of_the_scans_are_an_error_of_this_surface():
     spread = {"closure": np.full(5, 0.5), "stiffness": 3.0}
     _, _, budget, _ = budget_of("two", scan_spread=spread)
     for quantity, half in (("closure", 0.5), ("stiffness", 3.0)):
-        expected = np.hypot(unknown["total"].sel(quantity=quantity), half)
+        # A distance is no chance: it is added.
+        expected = unknown["total"].sel(quantity=quantity) + half
         np.testing.assert_allclose(budget["total"].sel(quantity=quantity), expected)
     # Of other quantities no other reading is known, which takes nothing from their total.
     others = ["separation", "area_corrected", "delta_sigma"]
@@ -475,11 +480,25 @@ def test_windows_of_a_scan_that_repeats_itself_are_alike():
     assert effective == 4
     first = loading.composite(0)
     assert len(composites) == 4
-    for composite, mated in composites:
+    for composite in composites:
         # Levelling has taken a common plane off; the fifth window lies across the four.
         apart = np.sort(composite, axis=None) - np.sort(first, axis=None)
         assert np.ptp(apart) < 0.2 * np.ptp(first)
-        assert mated == pytest.approx(composite.mean())
+
+
+def test_the_separation_of_other_windows_counts_from_their_mean_planes():
+    """So that it differs between windows as their mean gaps do, whichever node stands highest."""
+    loading, _, budget, _ = budget_of("pair")
+    (cells,) = loading.cells
+    others, effective = other_composites(loading, int(cells))
+    space = loading.half_space(loading.shape)
+    force = loading.forces(loading.settings.loads)[-1]
+    gaps = [
+        aperture(solve_contact(h, space, force=force, rtol=1e-4)).mean()
+        for h in (loading.composite(int(cells)), *others)
+    ]
+    window = budget["error"].sel(quantity="separation", source="window")[-1]
+    assert float(window) == pytest.approx(window_spread(np.array(gaps), effective), rel=0.1)
 
 
 def test_spread_of_windows_is_students():

@@ -133,10 +133,10 @@ def test_a_warning_stands_where_more_than_half_of_a_deciding_load_rests_on_error
     assert warned_of(curves([[1, 0.4, 0.3], [1, 0, 0]])) == ""
     words = warned_of(curves([[1, 0.9, 0.8], [1, 0, 0]]))
     assert "80% of the reference load (v = 0 mm, the reported offset among them)" in words
-    assert "in the states fitted (v = 0 mm)" in words
+    assert "in half or more of the states of 10 nodes (v = 0 mm)" in words
     words = warned_of(curves([[0.9, 0.9, 0.1], [0, 0, 0]]))
     assert "reference load" not in words
-    assert "states fitted" in words
+    assert "states of 10 nodes" in words
 
 
 @settings(max_examples=50, deadline=None)

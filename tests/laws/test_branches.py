@@ -8,11 +8,18 @@ import pytest
 import xarray as xr
 from made_stages import scan, stages_of
 
-from fractalcontact.laws.branches import OF_BRANCHES, OF_CYCLE, _solved_states, branches
+from fractalcontact.laws.branches import (
+    OF_BRANCHES,
+    OF_CYCLE,
+    _solved_states,
+    _with_loading,
+    branches,
+)
+from fractalcontact.laws.closure import FLUSH_FACES
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact import path as path_module
-from roughcontact.contact.path import load_path
+from roughcontact.contact.path import BRANCHES, load_path
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
@@ -176,3 +183,28 @@ def test_reloading_is_stiffer_than_loading_where_contacts_crush(stages):
     np.testing.assert_array_equal(data["interface_stiffness_reason"] != "", missing)
     at, first = (one["reference_stiffness"][1] for one in (reload, data.sel(branch="load")))
     assert at > first if np.isfinite(settings.material.hardness) else at == first
+
+
+def test_flush_faces_close_on_no_branch():
+    """Their w - w_b would be negative: they are loaded like a punch."""
+    heights = self_affine((72, 72), 0.1, 0.8, rms=0.1, seed=5, roll_off=1.5)
+    defaults = STUDY["defaults"] | {"offsets": ["0 mm", "0.3 mm"], "map_offset": "0 mm"}
+    settings = resolve_settings(STUDY | {"defaults": defaults}, "weak", {}, "branches")
+    faces, solver = (scan(heights, 0.1), None), solver_settings({}, "branches")
+    data = stages_of("flush", faces, settings, solver, later=("closure",))["branches"]
+    assert (data["interface_closure"] == 0).all()
+    assert data["interface_stiffness"].isnull().all()
+    assert (data["interface_stiffness_reason"] == FLUSH_FACES).all()
+
+
+@pytest.mark.parametrize("crushed", [True, False])
+def test_a_stiffness_that_reloading_lacks_is_that_of_loading_only_without_crushing(crushed):
+    dims = ("branch", "normal_force")
+    stiffness = [[np.nan, np.nan], [5.0, np.nan], [5.0, np.nan]]
+    data = xr.Dataset(
+        {"stiffness": (dims, stiffness), "yielded": (("y", "x"), [[crushed, False]])},
+        {"branch": list(BRANCHES)},
+    )
+    found = _with_loading(data, xr.DataArray([1.0, 2.0], dims="normal_force"))
+    again = [5.0, np.nan] if crushed else [1.0, 2.0]
+    np.testing.assert_array_equal(found, [[1.0, 2.0], again, again])

@@ -158,6 +158,21 @@ def test_seated_closure_begins_at_ten_nodes_or_where_the_study_says():
     assert np.isnan(stated["seated_closure"][:3]).all()
 
 
+def test_the_seat_is_the_lightest_load_mostly_on_sound_cells():
+    heights = self_affine((64, 64), 0.1, 0.8, seed=2, rms=0.1)
+    states = states_of(curves_of(heights, [300, 1e3, 3e3, 1e4]))
+    for share, first in (([0.5, 0, 0, 0], 0), ([1, 0.51, 0.5, 0.1], 2), ([0, 1, 0, 0], 0)):
+        states["suspect_load_share"][...] = share
+        curve = closure_curves(states, (6.4, 6.4), 2e4).squeeze()
+        assert curve["seating_pressure"] == curve["nominal_pressure"][first]
+        assert curve["seated_closure"][first] == 0
+    states["suspect_load_share"][...] = 0.6
+    none = closure_curves(states, (6.4, 6.4), 2e4).squeeze()
+    assert np.isnan(none["seating_pressure"])
+    assert "sound cells" in none["no_common_seat"].item()
+    assert not none["hyperbola_k_ni_determined"]
+
+
 def test_closures_of_all_offsets_count_from_one_pressure():
     """The largest of their own seats: there the closure is 0, beyond it what it is more."""
     _, _, curves = slid_joint([1, 4, 16], ["10 MPa", "40 MPa", "100 MPa", "250 MPa"], (1, 2))

@@ -230,6 +230,7 @@ def made_curves(nodes, closures, resolutions=(1,)):
         {
             "interface_closure": (dims, np.reshape(closures, shape)),
             "resolved": (dims, np.broadcast_to(np.asarray(nodes) >= 10, shape)),
+            "suspect_load_share": (dims, np.zeros(shape)),
             "nominal_pressure": ("normal_force", PRESSURE),
         },
         coords={

@@ -5,13 +5,19 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.limits import REFERENCE_PRESSURES
-from fractalcontact.laws.seated_laws import add_seated_laws, at_reference_pressures, within_span
+from fractalcontact.laws.seated_laws import (
+    NO_LOAD,
+    ON_SUSPECTS,
+    add_seated_laws,
+    at_reference_pressures,
+    within_span,
+)
 
 PRESSURE = np.geomspace(0.25, 50, 12)
 DIMS = ("direction", "offset", "resolution", "normal_force")
 
 
-def curves_of(*closures, pressure=PRESSURE, seat=None, stiffness=None, resolved=True):
+def curves_of(*closures, pressure=PRESSURE, seat=None, stiffness=None, resolved=True, share=0.0):
     """Closure stages with one offset and as many resolutions (1, 2, 4) as there are curves."""
     shape = (1, 1, len(closures), len(pressure))
     values = np.reshape(closures, shape)
@@ -21,6 +27,7 @@ def curves_of(*closures, pressure=PRESSURE, seat=None, stiffness=None, resolved=
         {
             "seated_closure": (DIMS, values),
             "resolved": (DIMS, np.broadcast_to(resolved, shape)),
+            "suspect_load_share": (DIMS, np.broadcast_to(share, shape)),
             "interface_stiffness": (DIMS, stiffnesses),
             "interface_stiffness_error": (DIMS, 0.01 * stiffnesses),
             "seating_pressure": (DIMS[:3], seats),
@@ -115,6 +122,26 @@ def test_the_stiffness_at_a_pressure_is_read_off_a_power_law_exactly():
     light = laws_of(hyperbola(PRESSURE), stiffness=stiffness, resolved=PRESSURE < 8)
     assert np.isfinite(light["reference_stiffness"]).values.tolist() == [True, True, False]
     assert found["reference_pressure"].attrs["units"] == "MPa"
+
+
+def test_states_on_suspicious_cells_enter_no_fit_and_no_stiffness():
+    """The law of the sound states is found again, whatever the others are."""
+    share = np.where(PRESSURE < 1.5, 0.9, 0.2)
+    closure = seated(hyperbola(PRESSURE) * (1 + 1e-5 * np.cos(9 * PRESSURE)))
+    closure[1:3] *= 2
+    found = laws_of(closure, stiffness=12 * PRESSURE**0.9, share=share)
+    assert found["seated_k_ni"] == pytest.approx(30, rel=1e-4)
+    assert np.isfinite(found["reference_stiffness"]).values.tolist() == [False, True, True]
+    reasons = found["reference_stiffness_reason"].values.tolist()
+    assert reasons == [ON_SUSPECTS, "", ""]
+    few = laws_of(closure, stiffness=12 * PRESSURE**0.9, resolved=PRESSURE < 8)
+    assert few["reference_stiffness_reason"].values.tolist() == ["", "", NO_LOAD]
+
+
+def test_a_joint_on_suspicious_cells_under_every_load_says_so():
+    found = laws_of(np.full(12, np.nan), seat=np.nan, share=0.9)
+    assert not found["seated_k_ni_determined"]
+    assert ON_SUSPECTS in found["seated_k_ni_reason"].item()
 
 
 def test_the_span_of_the_fits_ends_at_two_decades_but_for_rounding():

@@ -7,16 +7,26 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.intervals import t_quantile
 from fractalcontact.core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
+from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.core.settings import Friction, Solver
 from fractalcontact.core.window import nominal_area, window_sides
-from fractalcontact.joint.barton import barton_strength, scaled_joint
+from fractalcontact.joint.barton import barton_strength, joint_roughness, scaled_joint
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.joint.jrc import FITS, profile_roughness
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.laws.strength import (
+    ABOVE_SCALE,
     FULL,
+    OF_WINDOW,
+    OFF_LENGTHS,
+    OWN,
+    READ,
     TRUNCATED,
+    UNSCALED,
+    WINDOW,
     _by_barton,
     angles_with_errors,
     dilatancy_angle,
@@ -234,22 +244,89 @@ def test_bartons_law_is_that_of_the_theory_with_the_roughness_of_the_face(streng
     np.testing.assert_array_equal(
         one["barton_strength"], barton_strength(one["nominal_pressure"], 30.0, jrc, 100.0)
     )
-    scaled = scaled_joint(jrc, 100.0, 3.2)
-    assert (one["scaled_roughness"], one["scaled_wall_strength"]) == pytest.approx(scaled)
-    np.testing.assert_array_equal(
-        one["barton_scaled_strength"], barton_strength(one["nominal_pressure"], 30.0, *scaled)
-    )
+    # The window of 3.2 mm is shorter than any joint that the law of scale was measured on.
+    assert np.isnan(one["scaled_roughness"])
+    assert one["barton_scaled_reason"].item() == OFF_LENGTHS
+    assert np.isnan(one["barton_scaled_strength"]).all()
 
 
-def test_no_law_is_scaled_beyond_bartons_roughness():
+def test_no_law_is_scaled_beyond_bartons_roughness_and_lengths():
     stated = Friction(basic_friction_angle=30.0, joint_wall_strength=100.0)
     pressure = np.array([1.0, 10.0])
-    for jrc, side, known in ((15.0, 50.0, True), (15.0, 3.2, False)):
-        law = _by_barton(jrc, stated, side, pressure)
-        beyond = scaled_joint(jrc, 100.0, side)[0] > 20
-        assert beyond != known
-        assert np.isfinite(law["scaled_roughness"]) == known
-        assert np.isfinite(law["barton_scaled_strength"]).all() == known
+    for jrc, side, reason in (
+        (15.0, 100.0, ""),
+        (15.0, 400.0, ""),
+        (16.0, 60.0, ""),  # the upper end of its JRC is above 20 at that length
+        (15.0, 401.0, OFF_LENGTHS),
+        (15.0, 3.2, OFF_LENGTHS),
+        (19.0, 60.0, ABOVE_SCALE),
+    ):
+        law = _by_barton(Estimate(jrc, jrc - 2, jrc + 2), stated, side, pressure)
+        assert law["barton_scaled_reason"] == reason
+        scaled = law["barton_scaled_strength"]
+        assert np.isfinite(law["scaled_roughness"]) == (not reason)
+        assert np.isfinite(scaled.value).all() == (not reason)
+        if not reason:
+            by_law = barton_strength(pressure, 30.0, *scaled_joint(jrc, 100.0, side))
+            np.testing.assert_array_equal(scaled.value, by_law)
+            assert (scaled.low < scaled.value).all()
+            assert (scaled.value < scaled.high).all()
+        # The law without scale needs no length, and its interval is that of the JRC.
+        own = law["barton_strength"]
+        for end, of in zip(own.ends, (jrc, jrc - 2, jrc + 2), strict=True):
+            np.testing.assert_array_equal(end, barton_strength(pressure, 30.0, of, 100.0))
+
+
+def test_blocks_have_a_strength_by_each_rule_that_holds_for_their_length(twin):
+    chosen = replace(settings([0.2, 0.8]), block_lengths=[100.0, 200.0, 1000.0])
+    found = strength_of(twin, chosen).squeeze("contact_direction")
+    assert found["block_length"].values.tolist() == [100.0, 200.0, 1000.0]
+    reasons = found["block_reason"].values.tolist()
+    assert reasons == [
+        [OF_WINDOW] * 3,
+        [OF_WINDOW] * 3,
+        ["", UNSCALED, UNSCALED],
+        ["", "", OFF_LENGTHS],
+    ]
+    known = np.isfinite(found["block_strength"]).all("normal_force")
+    np.testing.assert_array_equal(known, np.array(reasons) == "")
+    pressure, jrc = found["nominal_pressure"], found["jrc_used"].item()
+    of_block = found["block_strength"].sel(rule="Barton and Bandis", block_length=200.0)
+    expected = barton_strength(pressure, 30.0, *scaled_joint(jrc, 100.0, 200.0))
+    np.testing.assert_allclose(of_block, expected)
+    none = strength_of(twin, settings([0.2, 0.8]))
+    assert none["block_strength"].size == 0
+
+
+def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):
+    """Their curves rise by other angles; ends are those of the angle, truncated as it is."""
+    chosen = settings([0.2, 0.8])
+    dilatancy, joint = pressed(twin, chosen)
+    alone = joint_strength(dilatancy, joint, twin, chosen).squeeze("contact_direction")
+    assert np.isnan(alone["peak_angle_spread"])
+    assert np.isnan(alone["peak_strength_low"]).all()
+    own = dilatancy["elastic_dilatancy"].isel(normal_force=1).values.ravel()
+    slid = dilatancy["offset_on_grid"].values.ravel()
+    curves = [own, own + 0.1 * slid, own - 0.05 * slid, own + 0.2 * slid]
+    variants = {
+        "variant_dilatancy": (("variant", "offset"), curves, {"direction": "W"}),
+        "variant_kind": ("variant", [OWN, WINDOW, WINDOW, READ]),
+        "windows_independent": 3.0,
+    }
+    found = joint_strength(dilatancy.assign(variants), joint, twin, chosen)
+    found = found.squeeze("contact_direction")
+    slopes = np.diff(np.c_[np.zeros(4), curves], axis=1) / np.diff(np.r_[0.0, slid])
+    peaks = np.degrees(np.arctan(slopes)).max(axis=1)
+    windows = t_quantile(2) * np.std(peaks[:3], ddof=1)
+    half = np.hypot(windows, abs(peaks[3] - peaks[0]))
+    assert found["peak_angle_spread"] == pytest.approx(half)
+    value, low, high = (found[f"peak_strength{end}"] for end in ("", "_low", "_high"))
+    np.testing.assert_array_equal(value, alone["peak_strength"])
+    angles = found["peak_dilatancy_angle"]
+    off = np.hypot(half, found["peak_dilatancy_angle_error"])
+    for end, sign in ((low, -1), (high, 1)):
+        expected, _ = shear_strength(found["nominal_pressure"], 30 + angles + sign * off)
+        np.testing.assert_allclose(end, expected)
 
 
 # Properties
@@ -300,6 +377,46 @@ def test_held_intervals_are_those_beyond_the_largest_angle(strength):
     np.testing.assert_array_equal(strength["truncated_low"], below)
 
 
+def test_roughness_is_that_of_the_face_whatever_the_window_and_its_holes():
+    heights = self_affine((96, 96), 0.3, 0.8, rms=0.5, seed=3)
+    small, large = (
+        profile_roughness(make_specimen(scan(heights, 0.3), window=w, name="face"), "E")
+        for w in (6.0, 24.0)
+    )
+    for name, of in small.data_vars.items():
+        np.testing.assert_array_equal(of, large[name], err_msg=name)
+    levelled = without_mean_plane(heights)
+    lag = 4  # 1.2 of 1.27 mm
+    each = np.sqrt(np.mean((levelled[:, lag:] - levelled[:, :-lag]) ** 2, axis=1)) / (lag * 0.3)
+    jrc = joint_roughness(each)
+    half = t_quantile(jrc.size - 1) * jrc.std(ddof=1)
+    whole = joint_roughness(np.sqrt(np.mean(each**2)))
+    assert small["jrc_of_law"] == pytest.approx(whole)
+    assert small["jrc_of_law_low"] == pytest.approx(whole - half)
+    assert small["jrc_of_law_high"] == pytest.approx(whole + half)
+    # A corner that was not measured takes its profiles away, and no more.
+    heights[:30, :30] = np.nan
+    holed = profile_roughness(make_specimen(scan(heights, 0.3), window=6.0, name="face"), "E")
+    assert holed["jrc_of_law"] == pytest.approx(whole, abs=1.0)
+    assert np.isfinite(holed["grasselli_roughness_low"])
+
+
+def test_four_directions_stand_beside_those_that_slide(strength, twin):
+    for direction in "ENWS":
+        of_face = profile_roughness(twin, direction)
+        rose = strength.sel(face_direction=direction)
+        for end in ("", "_low", "_high"):
+            np.testing.assert_array_equal(rose[f"face_jrc{end}"], of_face[f"jrc_of_law{end}"])
+            np.testing.assert_array_equal(
+                rose[f"face_grasselli{end}"], of_face[f"grasselli_roughness{end}"]
+            )
+    # A profile read backwards has the same slopes.
+    for one, other in ("EW", "NS"):
+        np.testing.assert_allclose(
+            *(strength["face_jrc"].sel(face_direction=d) for d in (one, other))
+        )
+
+
 def test_roughness_used_stays_within_bartons_profiles(strength):
     steep = make_specimen(scan(saw(64, 5.0)), window=3.2, reach=0.7, name="steep")
     found = profile_roughness(steep, "E")
@@ -312,6 +429,10 @@ def test_steps_are_whole_cells_whatever_the_spacing():
     coarse = make_specimen(scan(heights, 3.0), window=72.0, reach=9.0, name="coarse")
     found = profile_roughness(coarse, "N")
     assert found["step"].values.tolist() == [3, 3, 3]
+    # No fit was made for steps as long: there is no JRC, and none in a law.
+    assert np.isfinite(found["z2"]).all()
+    assert np.isnan(found["jrc"]).all()
+    assert np.isnan(found["jrc_used"])
     fine = make_specimen(scan(heights / 30), window=2.4, reach=0.6, name="fine")
     found = profile_roughness(fine, "N")
     np.testing.assert_allclose(found["step"], [0.1, 0.5, 1.3])

@@ -170,7 +170,8 @@ def of_explorer(folder, subject):
                 shown["determined"] = not at(f"undetermined/{row.source}", load)
             elif row.by_scan:
                 assert row.source in states["of_joint"]
-                shown["determined"] = not at("undetermined/by_scan", load)
+                masks = ["by_scan", "at_touch"][: 1 + row.from_touch]
+                shown["determined"] = not any(at(f"undetermined/{mask}", load) for mask in masks)
             if row.reason and not math.isfinite(number.value) and solved[load]:
                 reasons = states["reasons"][row.source]
                 shown["missing"] = reasons["words"][reasons["places"][index_of(row.source, load)]]

@@ -2,7 +2,6 @@
 
 import inspect
 import json
-import math
 import re
 import shutil
 import zipfile
@@ -24,7 +23,7 @@ from spreadsheets import FORMULA, formulas_in
 from fractalcontact.core.claims import claims_of
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
-from fractalcontact.core.text import with_unit
+from fractalcontact.core.text import short, with_unit
 from fractalcontact.core.verdicts import TOO_WIDE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
@@ -245,20 +244,15 @@ def test_a_light_that_is_not_good_says_what_would_help(atlas):
 
 def test_the_light_of_the_grid_leaves_out_the_error_of_the_scan(atlas):
     subject = Subject.of(atlas, "pair")
-    seated = subject.states("closure")["seated_closure"].values
-    load = subject.reported.reference
-    assert seated[load] > 0
-    budget = subject["error_budget"]
-    budget = budget.reindex(source=sorted({*budget["source"].values, "scan"}))
-    scan = {"quantity": "separation", "source": "scan"}
-    size = budget.sizes["normal_force"]
-    budget["error"].loc[scan] = np.where(
-        np.arange(size) == load, 0.3, np.where(seated == 0, 0.4, np.nan)
+    closure, budget = (subject[of].copy() for of in ("closure", "error_budget"))
+    closure["seated_closure"] = xr.full_like(closure["seated_closure"], 0.4)
+    for name, error in (("total", 0.5), ("scan", 0.3)):
+        name = f"seated_closure_{name}"
+        budget[name] = xr.full_like(budget[name], error)
+    changed = {"closure": closure, "error_budget": budget}
+    assert _without_scan(replace(subject, stages={**subject.stages, **changed})) == pytest.approx(
+        0.5
     )
-    changed = replace(subject, stages={**subject.stages, "error_budget": budget})
-    both = math.hypot(0.2 * seated[load], 0.3, 0.4) / seated[load]
-    assert _without_scan(changed, both) == pytest.approx(0.2)
-    assert _without_scan(changed, 0.0) == 0
 
 
 def test_the_grid_asks_for_the_spacing_that_its_order_of_convergence_gives():
@@ -417,10 +411,11 @@ def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
             (200.0, False, False, "it is told so"),
             (1e4, True, False, TOO_WIDE),
         ):
-            ends = {"seated_k_ni": 100.0, "seated_k_ni_low": 90.0, "seated_k_ni_high": high}
+            ends = {"k_ni": 100.0, "k_ni_low": 90.0, "k_ni_high": high}
             why = "it is told so" if not says else ""
             told = {"seated_k_ni_determined": says, "seated_k_ni_reason": why}
-            changed = with_told(atlas, f"closure/{name}", **ends, **told)
+            changed = with_told(atlas, f"closure/{name}", **told)
+            changed = with_told(changed, f"error_budget/{name}", **ends)
             found = sheet_of(Subject.of(changed, name)).of("k_ni")
             assert found.estimate.ends == (100, 90, high)
             assert (found.determined, found.remark) == (determined, reason)
@@ -507,6 +502,52 @@ def test_a_number_that_suspicious_cells_decide_is_undetermined_and_says_why(fact
     assert fact.notes[0] == f"0.1 mm: {BY_SCAN}"
 
 
+def changed(subject, seat=None, share=None, **attrs):
+    """A specimen with other attributes, another seat (MPa) and force on suspicious cells."""
+    closure = subject["closure"].copy()
+    if seat is not None:
+        closure["seating_pressure"] = xr.full_like(closure["seating_pressure"], seat)
+        closure["suspect_load_share"] = xr.full_like(closure["suspect_load_share"], share)
+    specimen = subject["specimens"].assign_attrs(attrs)
+    stages = {**subject.stages, "closure": closure, "specimens": specimen}
+    settings = subject.settings | {"seating_pressure": 0.0}
+    return replace(subject, stages=stages, settings=settings)
+
+
+def test_the_first_screen_says_why_the_seat_is_no_lighter_load(atlas):
+    subject = Subject.of(atlas, "pair")
+    heaviest = float(subject["closure"]["nominal_pressure"][-1])
+    why = "as suspicious cells of the scan carry most of lighter loads"
+    for share, outliers, words in (
+        (0.9, "keep", f", {why}; 'outliers: fill' in its sidecar shows what that changes"),
+        (0.9, "fill", f", {why}"),
+        (0.1, "keep", ""),
+    ):
+        block = first_screen._Block(changed(subject, heaviest, share, outliers=outliers), False)
+        assert block._why_no_lighter_seat() == words
+    lightest = float(subject["closure"]["nominal_pressure"][0])
+    assert first_screen._Block(changed(subject, lightest, 0.9), False)._why_no_lighter_seat() == ""
+
+
+def test_one_face_has_an_assumed_offset_and_the_range_over_others(atlas):
+    pair = Subject.of(atlas, "pair")
+    one = changed(pair, opposite="match")
+    gaps = pair.reported.curves(pair["closure"])["mean_gap"].sel(normal_force=pair.reported.force)
+    others = gaps.where((gaps["offset"] > 0) & (gaps["offset"] != pair.offset), drop=True)
+    assert others.size
+    words = first_screen._Block(one, False)._at_offsets("mean_gap", 1.0, " mm")
+    for end in (others.min(), others.max()):
+        assert short(float(end)) in words
+    assert words.endswith(" mm)")
+    # Nothing is assumed of a pair, nor of a face that the study generates.
+    assert first_screen._Block(pair, False)._at_offsets("mean_gap", 1.0, " mm") == ""
+    assert first_screen._Block(one, True)._at_offsets("mean_gap", 1.0, " mm") == ""
+    closure = one["closure"].assign(reported_offset=float(others["offset"][0]))
+    slid = replace(one, stages={**one.stages, "closure": closure})
+    assert first_screen.offset_words(slid).startswith("assumed offset ")
+    assert first_screen.offset_words(slid, True).startswith("slid by ")
+
+
 def test_the_strength_is_the_range_of_its_rules(facts_with):
     rules = {"peak_strength": of(26.8), "barton_strength": of(18.9), "contact_strength": of(45.5)}
     rules["barton_scaled_strength"] = of(np.nan, missing="JRC_n is above 20")
@@ -516,6 +557,7 @@ def test_the_strength_is_the_range_of_its_rules(facts_with):
         "range of 3 rules:",
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
         "no value by Barton and Bandis: JRC_n is above 20",
+        *first_screen._EXPLAINED,
     ]
     bound = "only a lower bound, as most angles are truncated at 70 degrees"
     fact = facts_with(**rules | {"contact_strength": of(40.0, missing=bound)})[-1]

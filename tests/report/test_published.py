@@ -13,6 +13,7 @@ from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
 from fractalcontact.report.columns import columns_of, old_columns_of
 from fractalcontact.report.published import (
     BY_SCAN,
+    BY_TOUCH,
     PLACES,
     Number,
     Row,
@@ -37,9 +38,9 @@ def subject(budget=None, **closure):
     """A specimen with one direction, offset and resolution, and three loads."""
     stage = xr.Dataset(
         {
-            **{name: over_loads(values) for name, values in closure.items()},
             "solved": over_loads([True, True, "solved" not in closure], "1"),
             "suspect_load_share": over_loads([0.0, 0.0, 0.9], "1"),
+            **{name: over_loads(values) for name, values in closure.items()},
             "reported_direction": "W",
             "reported_offset": 0.1,
             "reported_resolution": 1,
@@ -151,6 +152,12 @@ def test_the_scan_and_a_wide_interval_leave_a_number_undetermined():
     found = read(row(range=("a/b", "a/c")), subject(**ends))
     assert [one.determined for one in found] == [True, False, True]
     assert found[1].remark == TOO_WIDE
+    # What counts from first touch is undetermined under every load where that is a scan error.
+    ends = {"width": [1, 2, 3], "width_low": [0.9, 1.9, 2.9], "width_high": [1.1, 2.1, 3.1]}
+    touched = subject(suspect_load_share=[0.9, 0.2, 0.2], **ends)
+    found = read(row(by_scan=True, from_touch=True), touched)
+    assert [one.remark for one in found] == [BY_SCAN, BY_TOUCH, BY_TOUCH]
+    assert not any(one.determined for one in found)
     # A dimension that is 2 needs no interval, and one over all dimensions says nothing.
     ends = {"width": [2, 1, 1], "width_low": [2, -1, 0.9], "width_high": [2, 2.5, 1.1]}
     found = read(row(dimension=True), subject(**ends))

@@ -294,9 +294,7 @@ def test_a_rule_with_a_limit_is_asked_at_every_load():
 def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
     yielding = stages()
     forces = yielding["closure"]["normal_force"]
-    yielding["closure"]["area_corrected"] = forces * xr.ones_like(
-        yielding["closure"]["area_corrected"]
-    )
+    yielding["closure"]["area"] = forces * xr.ones_like(yielding["closure"]["area_corrected"])
     material = {**SETTINGS["material"], "hardness": 1.0}
     joint = Joint(yielding, {**SETTINGS, "material": material})
     for check in (
@@ -314,9 +312,15 @@ def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
         yielding, {**SETTINGS, "material": material | {"hardness": 1.1}}
     ).yields_everywhere
     assert not Joint(yielding, SETTINGS).yields_everywhere
+    # The corrected area is never below F/H: it decides nothing.
+    corrected = yielding["closure"]["area_corrected"]
+    yielding["closure"]["area_corrected"] = forces * xr.ones_like(corrected)
+    yielding["closure"]["area"] = yielding["closure"]["area"] * 1.2
+    assert not Joint(yielding, {**SETTINGS, "material": material}).yields_everywhere
+    yielding["closure"]["area"] = yielding["closure"]["area"] / 1.2
     # The area of two nodes is not known within 1 %.
     curves, light = yielding["closure"], forces == forces.min()
-    curves["area_corrected"] = curves["area_corrected"] * xr.where(light, 1.2, 1.0)
+    curves["area"] = curves["area"] * xr.where(light, 1.2, 1.0)
     settings = {**SETTINGS, "material": material}
     assert not Joint(yielding, settings).yields_everywhere
     curves["nodes"] = curves["nodes"].where(~light, 2.0)

@@ -13,6 +13,7 @@ from fractalcontact.states.registration_spread import (
     registration_spread,
     registration_values,
 )
+from fractalcontact.states.subgrid import closure_from
 
 MIDDLE = (12.0, 12.0)
 
@@ -24,11 +25,17 @@ def loading(motions, level=0.0):
     return loading_of(specimen)
 
 
+def spread_of(joint):
+    """Spread of a pair that is seated under its first load."""
+    forces = joint.forces(joint.settings.loads)
+    return registration_spread(registration_values(joint), forces, forces[0])
+
+
 def test_registrations_that_are_none_have_no_spread():
-    spread = registration_spread(loading([Motion(MIDDLE, MIDDLE)] * 3))
+    spread = spread_of(loading([Motion(MIDDLE, MIDDLE)] * 3))
     assert spread.keys() == set(QUANTITIES)
     assert all((of < 1e-9).all() for of in spread.values())
-    assert registration_spread(loading([])) is None
+    assert spread_of(loading([])) is None
 
 
 def test_a_shift_by_a_cell_is_that_of_the_cells():
@@ -48,12 +55,13 @@ def test_the_spread_is_that_of_the_values_and_grows_with_the_motions():
         for size in (0.01, 0.1)
     )
     values = registration_values(loading(far))
-    spread = registration_spread(loading(far))
+    spread = spread_of(loading(far))
+    values["seated_closure"] = values["closure"] - values["closure"][:, :1]
     for name in QUANTITIES:
         assert values[name].shape == (3, 2)
         half = t_quantile(2) * values[name].std(axis=0, ddof=1)
         np.testing.assert_allclose(spread[name], half)
-    assert (spread["closure"] > 2 * registration_spread(loading(near))["closure"]).all()
+    assert (spread["closure"] > 2 * spread_of(loading(near))["closure"]).all()
     # More load closes more, on more area, more stiffly.
     assert (np.diff(values["closure"]) > 0).all()
     assert (np.diff(values["separation"]) < 0).all()
@@ -71,6 +79,13 @@ def test_loads_can_be_chosen():
     whole, one = loading([Motion(MIDDLE, (12.1, 12.0)), Motion(MIDDLE, (11.9, 12.0))]), None
     one = registration_values(whole, [(25.0, "pressure")])
     whole_ladder = registration_values(whole)
-    del whole_ladder["seated_closure"]  # counts from the first of its loads
     for name, of in whole_ladder.items():
         assert one[name][:, 0] == pytest.approx(of[:, 1], rel=1e-2)
+
+
+def test_closure_counts_from_the_seat_that_is_given():
+    forces, closure = np.array([1.0, 2.0, 4.0]), np.array([[0.1, 0.3, 0.6], [0.2, 0.2, 0.9]])
+    np.testing.assert_allclose(closure_from(closure, forces, 2.0)[:, 1:], [[0, 0.3], [0, 0.7]])
+    assert np.isnan(closure_from(closure, forces, 2.0)[:, 0]).all()
+    for no_seat in (np.nan, 3.0):
+        assert np.isnan(closure_from(closure, forces, no_seat)).all()

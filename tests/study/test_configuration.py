@@ -265,6 +265,27 @@ def test_contacts_of_a_scanned_rock_crush_at_its_wall_strength(material, scan, h
     assert found.material.hardness == hardness
 
 
+@pytest.mark.parametrize("offsets", ["auto", ["0.2 mm", "0.4 mm"], ["0 mm", "0.4 mm"]])
+def test_two_faces_are_quoted_as_they_were_scanned_whatever_the_offsets(offsets):
+    """At none, which is solved too; one face, and a stated offset, keep theirs."""
+    own = {"offsets": offsets}
+    pair, one = (resolve_settings(ROCK, "one", own, "x", scan) for scan in (PAIR, SCANNED))
+    assert pair.map_offset == 0
+    stated = None if offsets == "auto" else [float(of.split()[0]) for of in offsets]
+    assert pair.offsets == (stated and sorted({0.0, *stated}))
+    assert one.map_offset is None
+    assert one.offsets == stated
+    slid = resolve_settings(ROCK, "one", own | {"map_offset": "0.4 mm"}, "x", PAIR)
+    assert slid.map_offset == pytest.approx(0.4)
+    assert slid.offsets == stated
+
+
+def test_block_lengths_are_lengths_in_order():
+    own = {"block_lengths": ["1 m", "200 mm"]}
+    assert resolve_settings(ROCK, "one", own, "x", SCANNED).block_lengths == [200.0, 1000.0]
+    assert resolve_settings(ROCK, "one", {}, "x", SCANNED).block_lengths == []
+
+
 def test_loads_of_the_defaults_that_a_hardness_cannot_carry_are_left_out():
     """78 MPa are nearly all that 80 MPa carry; what a sidecar states itself stays."""
     crushed = resolve_settings(ROCK, "one", {}, "x", SCANNED)

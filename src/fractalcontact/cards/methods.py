@@ -77,8 +77,8 @@ def _strength(card):
         return "Nothing slides here, so there is no strength."
     return (
         "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed "
-        "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 (Tse "
-        "and Cruden 1979)."
+        "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 of "
+        "the whole face (Tse and Cruden 1979)."
     )
 
 

@@ -249,6 +249,13 @@ class StrengthSettings:
 
     material: Material
     surface_range: Range
+    block_lengths: Annotated[
+        list[float],
+        StatedAs(Annotated[list[Length], Field(min_length=1, max_length=20), *different]),
+        key("lengths of blocks such as [200 mm, 1 m]", unsaid="none"),
+    ]
+    """lengths along the sliding of blocks whose strength is stated beside that of the window, by
+    each law that holds for them"""
 
 
 @dataclass(frozen=True)

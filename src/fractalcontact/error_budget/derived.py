@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..laws.seated_laws import at_reference_pressures
@@ -15,6 +16,11 @@ _TABLE = {
         "error of the closure from the seat as a property of this surface, half-width at 95 %",
     ),
     "seated_closure_relative": (("normal_force",), "1", "the same over the closure from the seat"),
+    "seated_closure_scan": (
+        ("normal_force",),
+        "mm",
+        "error of it by the two scans, contained in the total",
+    ),
     "seated_closure_total_of_population": (
         ("normal_force",),
         "mm",
@@ -48,24 +54,32 @@ _TABLE = {
 }
 
 
-def with_derived(budget: xr.Dataset, curve: LoadCurve, sampling: np.ndarray) -> xr.Dataset:
+def with_derived(
+    budget: xr.Dataset,
+    curve: LoadCurve,
+    sampling: np.ndarray,
+    of_scan: ArrayLike | None = None,
+) -> xr.Dataset:
     """Error budget of one load curve with the errors of derived quantities, :data:`_TABLE`.
 
     ``sampling`` (normal_force,) is the sampling error of the closure from the seat, half-width at
-    95 %, mm. NaN where an error is not known.
+    95 %, ``of_scan`` the error of two scans, both in mm. NaN where an error is not known.
 
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
-    which is exact: its error is the root sum of squares of theirs. First touch, which decides the
-    error of the closure from there, is in neither. At the seat it is 0 by definition. What moves
-    the mean planes apart widens the gap by as much. The stiffness at a pressure has the relative
-    error of the neighbouring states, and none beyond states whose error is known.
+    which is exact: its error is the root sum of squares of theirs, to which that of two scans is
+    added, which both separations share and which is its own. First touch, which decides the error
+    of the closure from there, is in neither. At the seat it is 0 by definition. What moves the mean
+    planes apart widens the gap by as much. The stiffness at a pressure has the relative error of
+    the neighbouring states, and none beyond states whose error is known.
     """
     states = curve.curve
     separation = budget["total"].sel(quantity="separation").values
     seated = states["seated_closure"].values
     seat = seated == 0
-    at_seat = separation[seat][0] if seat.any() else np.nan
-    of_both = np.where(seat, 0.0, np.hypot(separation, at_seat))
+    own = _without_scan(budget, separation)
+    at_seat = own[seat][0] if seat.any() else np.nan
+    scan = 0.0 if of_scan is None else np.nan_to_num(of_scan)
+    of_both = np.where(seat, 0.0, np.hypot(own, at_seat) + scan)
     stiffness = states["reference_stiffness"].values
     pressure = states["nominal_pressure"].values
     totals = [
@@ -78,6 +92,15 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve, sampling: np.ndarray) -> 
     gap = budget["total_of_population"].sel(quantity="separation").values
     fraction = budget["total"].sel(quantity="area_corrected").values / curve.loading.area
     coords = {"reference_pressure": states["reference_pressure"]}
-    values = (of_seated, relative, population, separation, gap, fraction, *totals)
+    of_scans = np.where(np.isfinite(seated), np.broadcast_to(scan, seated.shape), np.nan)
+    values = (of_seated, relative, of_scans, population, separation, gap, fraction, *totals)
     table = labelled(_TABLE, dict(zip(_TABLE, values, strict=True)))
     return budget.assign_coords(coords).assign(table)
+
+
+def _without_scan(budget: xr.Dataset, separation: np.ndarray) -> np.ndarray:
+    """Total error of the separation (normal_force), mm, without the source scan."""
+    if "source" not in budget.coords or "scan" not in budget["source"]:
+        return separation
+    scan = budget["error"].sel(quantity="separation", source="scan").values
+    return separation - np.nan_to_num(scan)

@@ -121,17 +121,18 @@ def error_budget(
     ``loading`` is in the first direction of contact, at the offset of the contact maps alone;
     ``curves`` and ``domains`` are the stages ``closure`` and ``domains``. ``registration_spread``
     has by quantity half-widths (normal_force,) of the spread over registrations of two scanned
-    faces that are statistically as good, in the quantity's unit; ``scan_spread`` likewise over
-    other fair readings of two scanned faces, a source "scan" of this surface. The stage
-    ``ensemble``, twins of a scan or realisations of an embedded specimen, is a source of its own,
-    in place of counting and windows in the total of the population.
+    faces that are statistically as good, in the quantity's unit; ``scan_spread`` likewise has the
+    errors of two scans, a source "scan" of this surface, which may hold those of registration. The
+    stage ``ensemble``, twins of a scan or realisations of an embedded specimen, is a source of its
+    own, in place of counting and windows in the total of the population.
 
     The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
     :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force). Raises
     `NotConverged` if a state on a finer grid, or of another window, could not be verified.
 
     All errors are half-widths of intervals of about 95 %. The sources are independent: totals are
-    root sums of squares. A spread over windows holds that of counting: only the larger enters.
+    root sums of squares, but for the scan: a distance of readings is no chance and is added. A
+    spread over windows holds that of counting: only the larger enters.
     """
     finest = int(curves["resolution"].min())
     curve = map_curve(loading, curves, domains, finest)
@@ -159,8 +160,9 @@ def error_budget(
     errors = {source: errors[source] for source in SOURCES if source in errors}
     reasons = _reasons(curve, errors, refinement, effective, registration_spread is not None)
     budget = _budget(curve, values, errors, refinement, reasons, (n_windows, effective))
-    sampling = _seated_sampling(curve, ensemble, registration_spread)
-    budget = with_derived(budget.assign(hardest), curve, sampling)
+    sampling = _seated_sampling(curve, ensemble, registration_spread, scan_spread)
+    of_scan = None if scan_spread is None else scan_spread.get("seated_closure", np.nan)
+    budget = with_derived(budget.assign(hardest), curve, sampling, of_scan)
     if ensemble is not None and TWINS in errors:
         words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
         budget["within_twins"] = (_ALL, position_in_band(curve, ensemble), words)
@@ -176,7 +178,9 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
         # No other reading of Delta_sigma is known. A quantity that another reading lacks under
         # some loads has no total there.
         is_read = np.isfinite(errors["scan"]).any(axis=1, keepdims=True)
-        total = np.hypot(total, np.where(is_read, errors["scan"], 0.0))
+        # A distance of readings is no chance: where another one is right, this one is off by all of
+        # it and by its other errors.
+        total = total + np.where(is_read, errors["scan"], 0.0)
         of_surface = (*OF_SURFACE, "scan")
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
@@ -186,7 +190,10 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
             sampling = np.where(finite, errors[members], sampling)
             largest = np.where(finite, members, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
-        sampling = np.hypot(sampling, errors["registration"])
+        # What the source scan holds already is not counted twice.
+        scan = np.nan_to_num(errors.get("scan", 0.0))
+        beyond = np.sqrt(np.maximum(errors["registration"] ** 2 - scan**2, 0.0))
+        sampling = np.hypot(sampling, beyond)
     of_population = np.hypot(total, sampling)
     absolute = np.isin(list(BUDGET_QUANTITIES), ABSOLUTE)
     size = np.abs(np.where((values == 0) | absolute[:, np.newaxis], np.nan, values))
@@ -306,18 +313,23 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
         return spread, 1, effective
     of_windows = np.full((len(composites) + 1, *values.shape), np.nan)
     of_windows[0] = values
-    for i, (whole, mated) in enumerate(composites, 1):
+    # The mean plane of each window is its datum, as for registrations: the highest node of its
+    # mated faces differs between windows by more than their gaps do.
+    separation = list(BUDGET_QUANTITIES).index("separation")
+    of_windows[0, separation] += curve.reference - curve.composite.mean()
+    for i, whole in enumerate(composites, 1):
         composite = prefractal(whole, curve.resolution)
+        datum = float(composite.max()), float(composite.mean())
         states = load_steps(
             composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
         )
         for place, state in zip(places, states, strict=True):
-            of_windows[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
+            of_windows[i, :, place] = budget_values(state, *datum, limits)
     spread[:, places] = window_spread(of_windows[:, :, places], effective)
     return spread, len(of_windows), effective
 
 
-def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
+def _seated_sampling(curve, ensemble, registration, scan) -> np.ndarray:
     """Sampling and registration error of the closure from the seat (normal_force), mm.
 
     NaN without an ensemble: neither counts nor windows tell how much two separations share.
@@ -327,7 +339,9 @@ def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
     scale = curve.curve["seated_closure"].values[np.newaxis]
     (half,) = over_loads(curve.forces, seated_spread(curve, ensemble)[np.newaxis], scale)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
-        half = np.hypot(half, (registration or {}).get("seated_closure", np.nan))
+        moved = (registration or {}).get("seated_closure", np.nan)
+        beyond = np.square(moved) - np.nan_to_num((scan or {}).get("seated_closure", 0.0)) ** 2
+        half = np.hypot(half, np.sqrt(np.maximum(beyond, 0.0)))
     return half
 
 

@@ -72,23 +72,17 @@ def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, 
     return places, float(covered.sum() / (rows * columns))
 
 
-def other_composites(
-    loading: JointLoading, cells: int
-) -> tuple[list[tuple[np.ndarray, float]], float]:
+def other_composites(loading: JointLoading, cells: int) -> tuple[list[np.ndarray], float]:
     """Composite topographies of other windows at an offset, mm, and the area that all cover.
 
-    Each comes with the largest height at zero offset, against a plane the mean one, mm. None where
-    the scan is too small. The area is in windows and holds the specimen's own.
+    None where the scan is too small. The area is in windows and holds the specimen's own.
     """
-    specimen, direction = loading.specimen, loading.direction
-    whole = whole_composite(specimen, direction, cells)
-    mated = whole_composite(specimen, direction, 0)
-    present = np.isfinite(whole) & np.isfinite(mated)
-    places, effective = window_places(present, window_slices(specimen))
+    specimen = loading.specimen
+    whole = whole_composite(specimen, loading.direction, cells)
+    places, effective = window_places(np.isfinite(whole), window_slices(specimen))
     if effective < MIN_EFFECTIVE:
         return [], effective
-    datum = np.max if loading.slides else np.mean
-    return [(whole[place], float(datum(mated[place]))) for place in places[1:]], effective
+    return [whole[place] for place in places[1:]], effective
 
 
 def window_spread(values: np.ndarray, effective: float) -> np.ndarray:

@@ -7,9 +7,11 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
+from ..core.estimate import NO_ESTIMATE, Estimate, names_of, rows_of
+from ..core.intervals import t_quantile
 from ..core.limits import JRC_RANGE, JRC_SAMPLING
 from ..core.mean_plane import without_mean_plane
-from ..core.window import faces, spacing_of, window_slices
+from ..core.window import faces, spacing_of
 from ..roughness.grasselli import grasselli
 from .barton import joint_roughness
 from .joint import direction_spacing, sliding_axis
@@ -33,36 +35,71 @@ FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
     "Tatone and Grasselli 2010, 0.5 mm": (0.5, lambda z2: 51.85 * z2**0.60 - 10.37),
     "Tatone and Grasselli 2010, 1 mm": (1.0, lambda z2: 55.03 * z2**0.74 - 6.10),
 }
+#: Rounding of a step of whole cells.
+_ROUNDING = 1e-9
 #: Largest relative difference between a step of whole cells and that of a fit.
 _NEAR = 0.25
+#: Fewest steps of a profile whose Z2 counts in the scatter, and fewest such profiles.
+_MIN_STEPS, _MIN_PROFILES = 10, 3
+#: Largest step over that of a fit: beyond it there is no JRC.
+MAX_STEP_RATIO = 2.0
+#: Meaning of the intervals of Z2 and JRC.
+_OF_PROFILES = "of the profiles of the face"
 _TABLE = {
     "step": ("sampling", "mm", "step of Z2, whole cells"),
-    "z2": ("sampling", "1", "rms slope Z2 of profiles along the sliding"),
-    "jrc": ("sampling", "1", "JRC = 32.2 + 32.47 log10 Z2"),
+    **{
+        name: (dims, unit, words)
+        for dims, of in {
+            "sampling": {
+                "z2": ("1", "rms slope Z2 of profiles along the sliding, whole face"),
+                "jrc": (
+                    "1",
+                    "JRC = 32.2 + 32.47 log10 Z2; missing where the step is more than twice "
+                    "that of the fit",
+                ),
+            },
+            (): {
+                "z2_of_law": ("1", f"rms slope Z2 at {JRC_SAMPLING}"),
+                "jrc_of_law": ("1", f"JRC at {JRC_SAMPLING}"),
+                "jrc_used": (
+                    "1",
+                    f"JRC at {JRC_SAMPLING}, kept within {JRC_RANGE[0]:g}-{JRC_RANGE[1]:g}",
+                ),
+            },
+            "fit": {
+                "jrc_by_fit": (
+                    "1",
+                    "JRC by each published fit; missing where no step is near the fit's",
+                ),
+            },
+        }.items()
+        for row, (unit, long_name) in of.items()
+        for name, (unit, words) in rows_of(row, unit, long_name, f"95 % {_OF_PROFILES}").items()
+    },
     "fit_step": ("fit", "mm", "step of Z2 of each published fit, whole cells"),
-    "jrc_by_fit": (
-        "fit",
-        "1",
-        "JRC by each published fit; missing where no step is near the fit's",
-    ),
-    "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {JRC_RANGE[0]:g}-{JRC_RANGE[1]:g}"),
 }
 
 
 #: Grasselli's parameters of the lower face at the scan's spacing.
 _GRASSELLI = {
-    f"grasselli_{name}": ((), unit, f"{words} of Grasselli's law, lower face, along the sliding")
-    for name, unit, words in (
+    name: ((), *of)
+    for parameter, unit, words in (
         ("theta_max", "degree", "largest apparent dip theta*_max"),
         ("c", "1", "exponent C"),
         ("a_0", "1", "fraction A_0 of the area that faces the sliding"),
         ("roughness", "degree", "roughness theta*_max / (C + 1)"),
     )
+    for name, of in rows_of(
+        f"grasselli_{parameter}",
+        unit,
+        f"{words} of Grasselli's law, lower face, along the sliding",
+        "95 % of quarters of the face",
+    ).items()
 }
 
 
 def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
-    """Z2 and joint roughness coefficient of the faces under the window, along the sliding.
+    """Z2, joint roughness coefficient and Grasselli's parameters of the whole face.
 
     Parameters
     ----------
@@ -73,65 +110,127 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     -------
     xr.Dataset
         Over `sampling` (:data:`JRC_SAMPLINGS`): the `step` in whole cells (mm), `z2` (rms slope
-        over that step, with every place of the first sample; both faces if two were scanned) and
-        `jrc` as Tse & Cruden's relation gives it. Over `fit` (:data:`FITS`) the `jrc_by_fit`, each
-        at its `fit_step`. `jrc_used`, the one of :data:`JRC_SAMPLING` kept within
-        :data:`JRC_RANGE`. `grasselli_theta_max`, `_c`, `_a_0` and `_roughness` of
-        :func:`roughness.grasselli.grasselli`.
+        over that step, of both faces if two were scanned) and `jrc` as Tse & Cruden's relation
+        gives it. Over `fit` (:data:`FITS`) the `jrc_by_fit`, each at its `fit_step`. `z2_of_law`
+        and `jrc_of_law` at :data:`JRC_SAMPLING`, `jrc_used` kept within :data:`JRC_RANGE`. Each has
+        `_low` and `_high`, between which 95 % of the profiles of the face lie.
+        `grasselli_theta_max`, `_c`, `_a_0` and `_roughness` of
+        :func:`roughness.grasselli.grasselli`, with the ends between which quarters of it lie.
 
     Notes
     -----
-    Tse & Cruden's relation is a regression over Barton's ten profiles and leaves 0-20 as soon as a
-    face is steeper than they are. The law of strength was measured within, and its correction for
-    scale has the JRC in exponents, where values beyond make no sense: both get the value kept
-    within.
+    Roughness needs no room to slide, so that it is that of the face and not of the window. Tse &
+    Cruden's relation is a regression over Barton's ten profiles and leaves 0-20 as soon as a face
+    is steeper than they are. The law of strength was measured within, and its correction for scale
+    has the JRC in exponents, where values beyond make no sense: both get the value kept within.
     """
     axis = sliding_axis(direction)
-    window = window_slices(specimen)
-    levelled = [without_mean_plane(z[window]) for z in faces(specimen)]
+    scanned = faces(specimen)[: 1 + (specimen.attrs["opposite"] == "scanned")]
+    levelled = [without_mean_plane(z) for z in scanned]
     profiles = [np.moveaxis(z, axis, 0) for z in levelled]
     roughness = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
     # Grasselli's law describes the lower face, because the upper block climbs it.
-    law = grasselli(levelled[0], spacing_of(specimen), direction)
-    return roughness.assign(
-        labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})
-    )
+    law = grasselli_with_scatter(levelled[0], spacing_of(specimen), direction)
+    values = {
+        of: end
+        for name, estimate in law.items()
+        for of, end in zip(names_of(f"grasselli_{name}"), estimate.ends, strict=True)
+    }
+    return roughness.assign(labelled(_GRASSELLI, values))
+
+
+def grasselli_with_scatter(
+    levelled: np.ndarray, spacing: tuple[float, float], direction: str
+) -> dict[str, Estimate]:
+    """Grasselli's parameters of a face (ny, nx), mm, by name, with the scatter of its quarters.
+
+    Arguments as of :func:`roughness.grasselli.grasselli`. No ends where a quarter has no law.
+    """
+    whole = grasselli(levelled, spacing, direction)
+    halves = [(slice(None, n // 2), slice(n // 2, None)) for n in levelled.shape]
+    quarters = [
+        grasselli(levelled[rows, columns], spacing, direction)
+        for rows in halves[0]
+        for columns in halves[1]
+    ]
+    scatter = t_quantile(len(quarters) - 1) * np.std(quarters, axis=0, ddof=1)
+    return {
+        name: Estimate.about(value, half, 0.0)
+        for name, value, half in zip(whole._fields, whole, scatter, strict=True)
+    }
 
 
 def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
-    """Profile roughness of levelled heights (n, m), mm, along the first axis of arrays."""
+    """Profile roughness of levelled heights (n, m), mm, along the first axis of arrays.
+
+    Heights may be missing (NaN). A single profile has no scatter, and no ends.
+    """
+    stated = [JRC_STEP if step is None else step for step in JRC_SAMPLINGS.values()]
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
-    z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
-    jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])
-    steps, by_fit = _by_fits(levelled, spacing)
+    z2 = [_z2(levelled, lag, spacing) for lag in lags]
+    jrc = [
+        _by_relation(joint_roughness, *of)
+        if lag * spacing <= MAX_STEP_RATIO * step * (1 + _ROUNDING)
+        else NO_ESTIMATE
+        for of, lag, step in zip(z2, lags, stated, strict=True)
+    ]
     chosen = list(JRC_SAMPLINGS).index(JRC_SAMPLING)
-    values = {
-        "step": spacing * np.array(lags),
-        "z2": z2,
-        "jrc": jrc,
-        "fit_step": steps,
-        "jrc_by_fit": by_fit,
-        "jrc_used": np.clip(jrc[chosen], *JRC_RANGE),
+    of_law, fits = jrc[chosen], _by_fits(levelled, spacing)
+    estimates = {
+        "z2": Estimate.stack([_about(*of) for of in z2]),
+        "jrc": Estimate.stack(jrc),
+        "z2_of_law": _about(*z2[chosen]),
+        "jrc_of_law": of_law,
+        "jrc_used": of_law.within(*JRC_RANGE),
+        "jrc_by_fit": Estimate.stack([of for _, of in fits]),
     }
+    values: dict[str, Any] = {
+        of: end
+        for name, estimate in estimates.items()
+        for of, end in zip(names_of(name), estimate.ends, strict=True)
+    }
+    values |= {"step": spacing * np.array(lags), "fit_step": [step for step, _ in fits]}
     return labelled_dataset(
         _TABLE, values, coords={"sampling": list(JRC_SAMPLINGS), "fit": list(FITS)}
     )
 
 
-def _rms_slope(profiles: list[np.ndarray], lag: int, spacing: float) -> float:
-    """Rms slope over a step of ``lag`` cells along the first axis; NaN if it is too long."""
+def _z2(profiles: list[np.ndarray], lag: int, spacing: float) -> tuple[float, np.ndarray]:
+    """Rms slope of the face over a step of ``lag`` cells along the first axis, and of its profiles.
+
+    NaN if the step is too long. Profiles count if they have half of the steps of the longest one.
+    """
     if lag >= len(profiles[0]):
-        return np.nan
-    squares = [np.mean((z[lag:] - z[:-lag]) ** 2) for z in profiles]
-    return np.sqrt(np.mean(squares)) / (lag * spacing)
+        return np.nan, np.empty(0)
+    squares = np.concatenate([(z[lag:] - z[:-lag]) ** 2 for z in profiles], axis=1)
+    squares /= (lag * spacing) ** 2
+    known = np.isfinite(squares)
+    steps, sums = known.sum(axis=0), np.where(known, squares, 0.0).sum(axis=0)
+    if not steps.any():
+        return np.nan, np.empty(0)
+    counted = steps >= max(_MIN_STEPS, steps.max() / 2)
+    return float(np.sqrt(sums.sum() / steps.sum())), np.sqrt(sums[counted] / steps[counted])
 
 
-def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np.ndarray]:
+def _by_relation(relation: Callable[[Any], Any], z2: float, each: np.ndarray) -> Estimate:
+    """JRC of the face by a relation to Z2, with the ends between which 95 % of its profiles lie."""
+    if not z2 > 0:
+        return NO_ESTIMATE
+    return _about(float(relation(z2)), relation(each[each > 0]))
+
+
+def _about(value: float, each: np.ndarray) -> Estimate:
+    """Value of the face with the scatter of its profiles: 95 % of them lie between the ends."""
+    half = t_quantile(each.size - 1) * each.std(ddof=1) if each.size >= _MIN_PROFILES else np.nan
+    return Estimate.about(value, half, 0.0)
+
+
+def _by_fits(profiles: list[np.ndarray], spacing: float) -> list[tuple[float, Estimate]]:
     """Step, mm, and JRC of each of :data:`FITS`; no JRC where whole cells come near no step."""
-    lags = [max(1, round(step / spacing)) for step, _ in FITS.values()]
-    jrc = np.full(len(FITS), np.nan)
-    for i, (lag, (step, fit)) in enumerate(zip(lags, FITS.values(), strict=True)):
-        z2 = _rms_slope(profiles, lag, spacing)
-        if abs(lag * spacing / step - 1) <= _NEAR and z2 > 0:
-            jrc[i] = fit(z2)
-    return spacing * np.array(lags), jrc
+    found = []
+    for step, relation in FITS.values():
+        lag = max(1, round(step / spacing))
+        is_near = abs(lag * spacing / step - 1) <= _NEAR
+        jrc = _by_relation(relation, *_z2(profiles, lag, spacing)) if is_near else NO_ESTIMATE
+        found.append((spacing * lag, jrc))
+    return found

@@ -74,6 +74,14 @@ def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
     return float(pressure[suspicious].sum()) / total if total > 0 else 0.0
 
 
+def on_sound_cells(curves: xr.Dataset) -> xr.DataArray:
+    """States that fits take and that can seat a joint: ten nodes or more, on sound cells mostly.
+
+    No more than half of the force acts on suspicious cells of the scans.
+    """
+    return curves["resolved"] & ~decided_by_scan(curves["suspect_load_share"])
+
+
 def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     """Curves whose fits rest on errors of the scans.
 
@@ -91,8 +99,8 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
 
     It names, for the reported direction and resolution, the offsets at which suspicious cells carry
-    more than half of the reference load, and those at which they do so in half of the states
-    fitted.
+    more than half of the reference load, and those at which they do so in half of the states of ten
+    nodes, which no fit then takes.
     """
     finest = reported.curves(curves)
     mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
@@ -106,7 +114,8 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     fitted = fits_undetermined(finest)
     if fitted.any():
         where = _offset_words(fitted["offset"].values[fitted.values])
-        parts.append(f"most of the load in the states fitted (v = {where} mm)")
+        states = f"half or more of the states of {RESOLVED_NODES} nodes"
+        parts.append(f"most of the load in {states} (v = {where} mm)")
     if not parts:
         return ""
     return (

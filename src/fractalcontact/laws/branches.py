@@ -17,8 +17,8 @@ from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
 from ..states.separation import ROUNDING
-from ..states.settlement import bulk_settlement
-from .closure import interface_stiffness, stiffness_reason
+from ..states.settlement import bulk_settlement, interface_closure
+from .closure import determined_closure, interface_stiffness, stiffness_reason
 from .seated_laws import at_reference_pressures, within_span
 
 _STATES = ("branch", "normal_force")
@@ -142,16 +142,19 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     loaded = _solved_states(composite, space, curve, mapped, loading.solving["hardness"])
     where = f"specimen {loading.specimen.attrs['name']}"
     data = branches(composite, loaded, loading.solving, where)
-    data["stiffness"] = data["stiffness"].fillna(curve["stiffness"].reset_coords(drop=True))
+    data["stiffness"] = _with_loading(data, curve["stiffness"].reset_coords(drop=True))
     sides = np.multiply(space.shape, space.spacing)
     settlement = bulk_settlement(forces, space.modulus, *sides)
     pressure = forces / loading.area
-    closure = data["closure"] - xr.DataArray(settlement, dims="normal_force")
+    flush = xr.DataArray(bool(np.ptp(composite) == 0))
+    bulk_settled = xr.DataArray(settlement, dims="normal_force")
+    closure = interface_closure(data["closure"], bulk_settled, flush)
+    closure = determined_closure(closure, flush).transpose(*_STATES)
     seat = closure[0].where(np.isclose(pressure, seating, rtol=ROUNDING, atol=0)).sum(min_count=1)
     beyond = pressure >= seating * (1 - ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
-    stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
-    reason = stiffness_reason(stiffness, data["stiffness"], bool(np.ptp(composite) == 0))
+    stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk).where(~flush)
+    reason = stiffness_reason(stiffness, data["stiffness"], flush)
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
@@ -163,6 +166,16 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     return data.assign(labelled(_OF_INTERFACE, values)).assign_coords(
         nominal_pressure=("normal_force", pressure, cf_attrs("MPa", "nominal pressure F / A_0"))
     )
+
+
+def _with_loading(data: xr.Dataset, loaded: xr.DataArray) -> xr.DataArray:
+    """Stiffness of all branches, N/mm, that of loading from the loaded states.
+
+    A joint that has not crushed unloads and reloads along its loading curve. One that has crushed
+    is stiffer on these branches: a stiffness that is missing there stays so.
+    """
+    same = (data["branch"] == LOAD) | ~data["yielded"].astype(bool).any()
+    return data["stiffness"].where(~same, loaded).transpose(*_STATES)
 
 
 def _solved_states(

@@ -20,6 +20,7 @@ from ..core.per_curve import per_curve
 from ..core.ranges import within
 from ..core.text import percent
 from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, TOO_WIDE, UNDECIDED
+from ..joint.overlap import on_sound_cells
 
 #: Fewest states for a law of two parameters: with fewer its interval means nothing.
 MIN_CLOSURE_POINTS = 4
@@ -211,12 +212,12 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     """Add both laws of every closure curve, and which fits better, to a closure stage.
 
     ``fit_range`` has the smallest and largest force of the fits, N; by default they take all loads.
-    States that are not resolved are not fitted.
+    States that are not resolved, or rest on suspicious cells of the scans, are not fitted.
     """
     force = curves["normal_force"]
     of_curve = {
         "closure": curves["interface_closure"],
-        "resolved": curves["resolved"],
+        "resolved": on_sound_cells(curves),
         "inside": within(force, *(fit_range or (force.min(), force.max()))),
         "pressure": curves["nominal_pressure"],
         "force": force,

@@ -15,6 +15,7 @@ from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
 from ..core.per_curve import per_curve
 from ..core.text import percent
 from ..core.verdicts import TOO_WIDE
+from ..joint.overlap import on_sound_cells
 from ..states.separation import ROUNDING
 from .closure_laws import (
     MIN_CLOSURE_POINTS,
@@ -23,6 +24,10 @@ from .closure_laws import (
     fit_hyperbola,
     fit_semi_logarithmic,
 )
+
+#: Reasons why there is no stiffness at a pressure.
+ON_SUSPECTS = "suspicious cells of the scans carry most of the force"
+NO_LOAD = "no load below or above this pressure has a known stiffness"
 
 _RANGE = "from the seating pressure on, over at most two decades"
 #: Quantities of every curve: unit, long name, dimension of an array.
@@ -40,6 +45,11 @@ _NAMES = {
     "reference_stiffness": (
         "MPa/mm",
         "tangent stiffness of the interface at a pressure",
+        "reference_pressure",
+    ),
+    "reference_stiffness_reason": (
+        "1",
+        "why there is none",
         "reference_pressure",
     ),
 }
@@ -60,9 +70,11 @@ def add_seated_laws(curves: xr.Dataset) -> None:
     )
     of_curve = {
         "pressure": curves["nominal_pressure"],
-        "closure": curves["seated_closure"].where(curves["resolved"]),
-        "stiffness": curves["interface_stiffness"].where(curves["resolved"]),
+        "closure": curves["seated_closure"],
+        "stiffness": curves["interface_stiffness"],
         "seat": curves["seating_pressure"],
+        "resolved": curves["resolved"],
+        "sound": on_sound_cells(curves),
     }
     curves.update(per_curve(of_curve, _seated_laws, _NAMES))
     curves["seated_k_ni_change"] = at_twice(curves["seated_k_ni"]).assign_attrs(
@@ -71,13 +83,26 @@ def add_seated_laws(curves: xr.Dataset) -> None:
 
 
 def _seated_laws(
-    pressure: np.ndarray, closure: np.ndarray, stiffness: np.ndarray, seat: float
+    pressure: np.ndarray,
+    closure: np.ndarray,
+    stiffness: np.ndarray,
+    seat: float,
+    resolved: np.ndarray,
+    sound: np.ndarray,
 ) -> dict[str, Any]:
-    """Both laws of one seated closure curve, and its stiffness at the reference pressures."""
-    fitted = (closure > 0) & within_span(pressure, seat)
+    """Both laws of one seated closure curve, and its stiffness at the reference pressures.
+
+    States that are not resolved, or not ``sound``, are left out.
+    """
+    fitted = sound & (closure > 0) & within_span(pressure, seat)
     hyperbola = fit_hyperbola(pressure[fitted], closure[fitted], seat)
     logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
-    undetermined = _undetermined(hyperbola, int(fitted.sum()), seat)
+    by_scan = bool((resolved & ~sound).any())
+    undetermined = _undetermined(hyperbola, int(fitted.sum()), seat, by_scan)
+    at_pressures, of_resolved = (
+        at_reference_pressures(pressure, np.where(of, stiffness, np.nan))
+        for of in (sound, resolved)
+    )
     return {
         "seated_k_ni": hyperbola.k_ni,
         "seated_v_m": hyperbola.w_m,
@@ -89,12 +114,17 @@ def _seated_laws(
         "seated_fit_max": pressure[fitted].max() if fitted.any() else np.nan,
         "seated_k_ni_determined": not undetermined,
         "seated_k_ni_reason": undetermined,
-        "reference_stiffness": at_reference_pressures(pressure, stiffness),
+        "reference_stiffness": at_pressures,
+        "reference_stiffness_reason": np.where(
+            np.isfinite(at_pressures), "", np.where(np.isfinite(of_resolved), ON_SUSPECTS, NO_LOAD)
+        ),
     }
 
 
-def _undetermined(hyperbola: Hyperbola, points: int, seat: float) -> str:
+def _undetermined(hyperbola: Hyperbola, points: int, seat: float, by_scan: bool) -> str:
     """Reason why k_ni is undetermined and what would help; empty where it is determined."""
+    if np.isnan(seat) and by_scan:
+        return f"{ON_SUSPECTS} at every load from the seating pressure on"
     if np.isnan(seat):
         return "ten nodes touch at no load from the seating pressure on; a finer scan would help"
     if points < MIN_CLOSURE_POINTS:

@@ -14,20 +14,23 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.estimate import Estimate
-from ..core.intervals import mean_interval
+from ..core.directions import DIRECTIONS
+from ..core.estimate import Estimate, names_of
+from ..core.intervals import mean_interval, t_quantile
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
 from ..core.per_curve import per_curve
-from ..core.settings import Friction, Material, StrengthSettings
+from ..core.settings import Friction, StrengthSettings
 from ..core.window import nominal_area, window_sides
-from ..joint.barton import LABORATORY_LENGTH, barton_strength, scaled_joint
+from ..joint.barton import BANDIS_LENGTHS, LABORATORY_LENGTH, barton_strength, scaled_joint
 from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
 from .contact_strength import NAMES as CONTACT_FIELDS
 from .contact_strength import contact_strength
 
+#: Kinds of variants of a joint: this window, others of the scan, its quarters, other readings.
+OWN, WINDOW, QUARTER, READ = "this window", "other window", "quarter", "other reading"
 #: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
 RESIDUAL_FROM = 0.5
 
@@ -140,8 +143,12 @@ def joint_strength(
     material = settings.material
     pressure = dilatancy["normal_force"].values / nominal_area(specimen)
     directions = dilatancy["contact_direction"]
-    roughness = [profile_roughness(specimen, str(d)) for d in directions.values]
+    of_face = {
+        str(d): profile_roughness(specimen, str(d)) for d in {*DIRECTIONS, *directions.values}
+    }
+    roughness = [of_face[str(d)] for d in directions.values]
     result = xr.concat(roughness, directions, combine_attrs="override")
+    rose = _rose(of_face)
     of_direction = {
         "direction": directions,
         "offset": dilatancy["offset_on_grid"],
@@ -149,8 +156,13 @@ def joint_strength(
         "error": dilatancy["elastic_dilatancy_error"],
         "cells": joint["offset_cells"].sel(contact_direction=directions),
         "jrc": result["jrc_used"],
+        "jrc_low": result["jrc_used_low"],
+        "jrc_high": result["jrc_used_high"],
     }
-    strength = partial(_strength, specimen=specimen, material=material, pressure=pressure)
+    spread = angle_spread(dilatancy, specimen)
+    strength = partial(
+        _strength, specimen=specimen, settings=settings, pressure=pressure, spread=spread
+    )
     result.update(per_curve(of_direction, strength, FIELDS, ("offset", "normal_force")))
     result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
     if DIP in dilatancy:
@@ -165,6 +177,14 @@ def joint_strength(
     )
     attrs = cf_attrs("MPa", "nominal pressure sigma_0")
     result["nominal_pressure"] = ("normal_force", pressure, attrs)
+    words = "spread of the peak dilatancy angle over windows and readings of the scans, 95 %"
+    result["peak_angle_spread"] = ((), spread, cf_attrs("degree", words))
+    result = result.merge(rose)
+    lengths = cf_attrs("mm", "length of a block along the sliding")
+    result = result.assign_coords(
+        block_length=("block_length", np.array(settings.block_lengths, float), lengths),
+        rule=list(RULES),
+    )
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
@@ -174,6 +194,7 @@ def joint_strength(
 
 
 _EACH, _LOAD = ("interval", "normal_force"), ("normal_force",)
+_BLOCK = ("rule", "block_length", "normal_force")
 _QUANTITIES = {
     "midpoint": ("mm", "middle of the interval of offsets", "interval"),
     "dilatancy_angle": ("degree", "dilatancy angle i", *_EACH),
@@ -200,6 +221,9 @@ _QUANTITIES = {
     "scaled_roughness": ("1", "JRC_n for the window's length; missing above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n", *_LOAD),
+    "barton_scaled_reason": ("1", "why there is no strength by JRC_n and JCS_n"),
+    "block_strength": ("MPa", "peak strength of a block of a length, by rule", *_BLOCK),
+    "block_reason": ("1", "why there is none", "rule", "block_length"),
 }
 
 #: Quantities that rest on solved states, and have a solver error bound for that.
@@ -210,6 +234,18 @@ _SOLVED = (
     "peak_strength",
     "peak_dilatancy_angle",
 )
+#: Rules for the strength of blocks.
+RULES = ("dilatancy", "contact", "Barton", "Barton and Bandis")
+#: Reasons why a rule has no strength for a length.
+OFF_LENGTHS = "the law of scale was measured on lengths from {:g} to {:g} mm".format(
+    *BANDIS_LENGTHS
+)
+ABOVE_SCALE = "JRC_n, JRC scaled to that length, is above 20, where Barton's law ends"
+UNSCALED = f"JRC and JCS are those of {LABORATORY_LENGTH:g} mm"
+OF_WINDOW = "computed for the window alone: no law carries it to another length"
+#: Relative difference of a length from the laboratory's.
+_LIKE_LABORATORY = 0.01
+
 #: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
@@ -229,12 +265,19 @@ def _strength(
     error: np.ndarray,
     cells: np.ndarray,
     jrc: np.ndarray,
+    jrc_low: np.ndarray,
+    jrc_high: np.ndarray,
     *,
     specimen: xr.Dataset,
-    material: Material,
+    settings: StrengthSettings,
     pressure: np.ndarray,
+    spread: float,
 ) -> dict[str, Any]:
-    """:data:`FIELDS` of one direction, from its elastic dilatancy (offset, load) and error, mm."""
+    """:data:`FIELDS` of one direction, from its elastic dilatancy (offset, load) and error, mm.
+
+    ``spread``, degrees, is that of the peak angle over windows and readings of the scans.
+    """
+    material = settings.material
     angle_b, largest = material.basic_friction_angle, offset[-1]
     rigid, _ = rigid_dilatancy(specimen, str(direction), cells)
     # Openings of rigid faces are read off the heights: they have no solver error.
@@ -269,9 +312,12 @@ def _strength(
     }
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
     side = window_sides(specimen)[sliding_axis(str(direction))]
-    values |= _by_barton(float(jrc), material, side, pressure)
+    of_face = Estimate(float(jrc), float(jrc_low), float(jrc_high))
+    values |= _by_barton(of_face, material, side, pressure)
+    values |= _of_blocks(of_face, settings, pressure)
     # Yielding contacts carry their hardness, so that the pressure tells the fraction in contact.
-    return values | judged_strengths(values, pressure >= MAX_TOUCHING * material.hardness)
+    judged = judged_strengths(values, pressure >= MAX_TOUCHING * material.hardness)
+    return values | judged | _with_spread(values, pressure, angle_b, spread)
 
 
 def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[str, np.ndarray]:
@@ -282,7 +328,7 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     :data:`core.limits.MAX_TOUCHING` of the window touches.
     """
     midpoint, angle, peak_offset, peaks, barton = (
-        np.asarray(values[name])
+        np.asarray(getattr(values[name], "value", values[name]))
         for name in (
             "midpoint",
             "friction_angle",
@@ -303,15 +349,138 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     }
 
 
-def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray) -> dict[str, Any]:
-    """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
+def _with_spread(
+    values: Mapping[str, Any], pressure: np.ndarray, angle_b: float, spread: float
+) -> dict[str, Estimate]:
+    """Peak angle and peak strength by dilatancy with intervals that hold windows and scans."""
+    angle = values["peak_dilatancy_angle"]
+    half = np.hypot(values["peak_dilatancy_angle_error"], spread)
+    angles = Estimate.about(angle, half, -LARGEST_FRICTION_ANGLE, 90.0)
+    low, high = (shear_strength(pressure, angle_b + end)[0] for end in (angle - half, angle + half))
+    peaks = values["peak_strength"]
+    # Several intervals may be truncated at the same angle: ends hold the value all the same.
+    strengths = Estimate(peaks, np.minimum(low, peaks), np.maximum(high, peaks))
+    return {"peak_dilatancy_angle": angles, "peak_strength": strengths}
+
+
+def _by_barton(
+    jrc: Estimate, material: Friction, side: float, pressure: np.ndarray
+) -> dict[str, Any]:
+    """Barton's law with the JRC and JCS as they are, and scaled to the side of the window.
+
+    Intervals are those of the JRC, over the profiles of the face.
+    """
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
-    scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
-    # Barton's law was not measured on joints beyond his scale.
-    scaled_jrc = scaled_jrc if scaled_jrc <= JRC_RANGE[1] else np.nan
+    scaled_jrc, scaled_wall, reason = _scaled(jrc, wall, side)
     return {
-        "barton_strength": barton_strength(pressure, angle, jrc, wall),
+        "barton_strength": _over_pressures(jrc, wall, angle, pressure),
         "scaled_roughness": scaled_jrc,
         "scaled_wall_strength": scaled_wall,
-        "barton_scaled_strength": barton_strength(pressure, angle, scaled_jrc, scaled_wall),
+        "barton_scaled_strength": _by_bandis(jrc, material, side, pressure),
+        "barton_scaled_reason": reason,
     }
+
+
+def _over_pressures(jrc: Estimate, wall: float, angle: float, pressure: np.ndarray) -> Estimate:
+    """Strength by Barton's law over pressures, MPa, with the ends of the JRC."""
+    value, low, high = (np.asarray(barton_strength(pressure, angle, end, wall)) for end in jrc.ends)
+    return Estimate(value, low, high)
+
+
+def _by_bandis(jrc: Estimate, material: Friction, length: float, pressure: np.ndarray) -> Estimate:
+    """Strength by Barton's law with JRC_n and JCS_n, with the ends of the JRC.
+
+    The smaller JRC_n is not always that of the smaller JRC: the ends are sorted. An end whose JRC_n
+    is beyond Barton's scale has the largest JRC of that scale.
+    """
+    angle, wall = material.basic_friction_angle, material.joint_wall_strength
+    value = np.asarray(barton_strength(pressure, angle, *_scaled(jrc, wall, length)[:2]))
+    ends = []
+    for end in jrc.ends[1:]:
+        scaled_jrc, scaled_wall = scaled_joint(end, wall, length)
+        on_scale = np.minimum(scaled_jrc, JRC_RANGE[1])
+        ends.append(np.asarray(barton_strength(pressure, angle, on_scale, scaled_wall)))
+    low, high = np.min([value, *ends], axis=0), np.max([value, *ends], axis=0)
+    return Estimate(value, low, high)
+
+
+def _scaled(jrc: Estimate, wall: float, length: float) -> tuple[float, float, str]:
+    """JRC_n and JCS_n of a joint of a length, mm, and why there is none; NaN then."""
+    if not BANDIS_LENGTHS[0] <= length <= BANDIS_LENGTHS[1]:
+        return np.nan, np.nan, OFF_LENGTHS
+    scaled_jrc, scaled_wall = (float(of) for of in scaled_joint(jrc.value, wall, length))
+    if scaled_jrc > JRC_RANGE[1]:
+        # Barton's law was not measured on joints beyond his scale.
+        return np.nan, scaled_wall, ABOVE_SCALE
+    return scaled_jrc, scaled_wall, ""
+
+
+def _of_blocks(
+    jrc: Estimate, settings: StrengthSettings, pressure: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Peak strengths (rule, block_length, load) of blocks of stated lengths, with reasons."""
+    material, lengths = settings.material, settings.block_lengths
+    strengths = np.full((len(RULES), len(lengths), len(pressure)), np.nan)
+    reasons = np.full((len(RULES), len(lengths)), "", object)
+    for i, length in enumerate(lengths):
+        by_rule = {
+            "Barton": (
+                _over_pressures(
+                    jrc, material.joint_wall_strength, material.basic_friction_angle, pressure
+                ).value,
+                "" if np.isclose(length, LABORATORY_LENGTH, rtol=_LIKE_LABORATORY) else UNSCALED,
+            ),
+            "Barton and Bandis": (
+                _by_bandis(jrc, material, length, pressure).value,
+                _scaled(jrc, material.joint_wall_strength, length)[2],
+            ),
+        }
+        for row, rule in enumerate(RULES):
+            strength, reason = by_rule.get(rule, (np.full(len(pressure), np.nan), OF_WINDOW))
+            strengths[row, i] = np.nan if reason else strength
+            reasons[row, i] = reason
+    return {"block_strength": strengths, "block_reason": reasons.astype(str)}
+
+
+def _rose(of_face: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """Roughness of the whole face in four directions, from that of each."""
+    names = {
+        "face_jrc": "jrc_of_law",
+        "face_grasselli": "grasselli_roughness",
+    }
+    directions = xr.DataArray(
+        list(DIRECTIONS), dims="face_direction", attrs=cf_attrs("1", "direction of sliding")
+    )
+    return xr.Dataset(
+        {
+            of: xr.concat(
+                [of_face[d][name] for d in DIRECTIONS], directions, combine_attrs="override"
+            )
+            for new, old in names.items()
+            for of, name in zip(names_of(new), names_of(old), strict=True)
+        }
+    ).assign_coords(face_direction=directions)
+
+
+def angle_spread(dilatancy: xr.Dataset, specimen: xr.Dataset) -> float:
+    """Spread of the peak dilatancy angle over windows and readings of the scans, degrees.
+
+    Half-width at 95 %: root sum of squares of Student's t times the standard deviation over the
+    windows, this one among them, or over its quarters, and of the distance of the farthest reading;
+    from :func:`error_budget.slid_variants.slid_variants`. NaN where the stage has none.
+    """
+    if "variant_dilatancy" not in dilatancy:
+        return np.nan
+    curves = dilatancy["variant_dilatancy"]
+    along = dilatancy["offset_on_grid"].sel(contact_direction=curves.attrs["direction"])
+    offset, delta = along.values, curves.transpose("offset", "variant").values
+    if specimen.attrs["opposite"] == "match":
+        offset, delta = from_flush(offset, delta)
+    peaks, _ = peak(*dilatancy_angle(offset, delta))
+    kinds = dilatancy["variant_kind"].values.astype(str)
+    own, read = peaks[kinds == OWN], peaks[kinds == READ]
+    quarters = peaks[kinds == QUARTER]
+    windows = quarters if quarters.size else np.append(own, peaks[kinds == WINDOW])
+    independent = float(dilatancy["windows_independent"])
+    half = t_quantile(independent - 1) * windows.std(ddof=1) if windows.size > 1 else np.nan
+    return float(np.hypot(half, np.abs(read - own).max(initial=0.0)))

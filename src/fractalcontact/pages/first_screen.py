@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.determined import decided_by_scan
 from ..core.labels import OPPOSITE, printable
-from ..core.limits import JRC_SAMPLING
+from ..core.limits import ALL_CRUSH, JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, read, read_at, row_of
@@ -16,7 +17,10 @@ from .lights import lights_of, trust_of
 from .summary import lengths_of
 
 #: Intervals as the register names them, in words.
-_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
+_ALONE = {"solver": " solver error alone"}
+_OF_SURFACE = "all errors of this surface"
+#: Relative difference of pressures that are one.
+_ROUNDING = 1e-9
 #: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
@@ -27,11 +31,15 @@ STRENGTH_RULES = {
     "barton_strength": "Barton",
     "barton_scaled_strength": "Barton and Bandis",
 }
+#: What the rules are, a line each for those computed here and those measured by others.
+_EXPLAINED = (
+    "dilatancy and contact are computed for this window, where nothing breaks: friction angle plus "
+    "the steepest rise of the faces, or plus the dips that bear the force",
+    "Barton, and Barton and Bandis with its change with length, were measured in shear tests, from "
+    "JRC of the face, wall strength and friction angle",
+)
 #: Rms slope of the gap above which the local cubic law is not valid.
 _STEEP_GAP = 1.0
-#: Relative difference of the raw contact area from that of contacts that all crush: 0.01 to 0.02
-#: where 97 % of the nodes bear the hardness.
-_SAME = 0.03
 
 
 class Fact(NamedTuple):
@@ -48,7 +56,7 @@ def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
         "name": subject.name,
         "label": printable(subject.label),
         "synthetic": synthetic,
-        "offset": offset_words(subject),
+        "offset": offset_words(subject, synthetic),
         "model": model_of(subject),
         "window": window_words(subject),
         "facts": facts_of(subject, synthetic),
@@ -84,12 +92,15 @@ def window_words(subject: Subject) -> str:
     return f"window {sides}, spacing {with_unit(lengths['spacing'], 'mm')}{chosen}"
 
 
-def offset_words(subject: Subject) -> str:
-    """Offset of a joint in words."""
+def offset_words(subject: Subject, synthetic: bool = False) -> str:
+    """Offset of a joint in words; that of one scanned face is assumed."""
     if subject.direction == "none":
         return "without sliding"
     if subject.offset:
-        return f"slid by {with_unit(subject.offset, 'mm')} towards {subject.direction}"
+        words = f"{with_unit(subject.offset, 'mm')} towards {subject.direction}"
+        # Nobody measured how far a face that was scanned alone had slid.
+        one_face = subject["specimens"].attrs["opposite"] == "match" and not synthetic
+        return f"assumed offset {words}" if one_face else f"slid by {words}"
     faces = OPPOSITE[subject["specimens"].attrs["opposite"]]
     return "in the mated position" if faces.startswith("one") else "at no offset"
 
@@ -108,7 +119,7 @@ def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
             f"contact {at}",
             "contact_fraction",
             "%",
-            _ALL_CRUSH if abs(crushed / pressure - 1) < _SAME else "",
+            _ALL_CRUSH if abs(crushed / pressure - 1) < ALL_CRUSH else "",
         ),
     ]
     if subject.direction != "none":
@@ -130,10 +141,16 @@ class _Block:
 
     def fact(self, title: str, name: str, unit: str, beside: str = "") -> Fact:
         """Number of a row; below it its interval, the whole joint's and that of harder contacts."""
-        return self.written(title, self.number(name), unit, beside, row_of(name).interval)
+        return self.written(title, self.number(name), unit, beside, row_of(name).interval, name)
 
     def written(
-        self, title: str, number: Number, unit: str, beside: str, interval: str = ""
+        self,
+        title: str,
+        number: Number,
+        unit: str,
+        beside: str,
+        interval: str = "",
+        name: str = "",
     ) -> Fact:
         """Number in words and what stands below it; a dash with the reason where it is missing."""
         if number.missing:
@@ -144,16 +161,36 @@ class _Block:
         if not number.determined:
             reason = str(number.estimate.reason) or number.remark
             return Fact(title, "undetermined", list(filter(None, (f"{words}: {reason}", beside))))
-        ends = _ends(number, size, _ALONE.get(interval, ""))
-        notes = ends, self._of_joint(number, size), self._harder(number, size), beside
+        ends = _ends(number, size, self._holds(interval))
+        notes = (
+            ends,
+            self._of_joint(number, size),
+            self._harder(number, size),
+            self._at_offsets(name, size, shown),
+            beside,
+        )
         return Fact(title, words, list(filter(None, notes)))
 
     def closure(self, title: str) -> Fact:
         """Closure from the seat; from first touch under a load below the seat."""
         if _value(self.number("seated_closure")) > 0:
             seat = with_unit(self.number("seating_pressure").value, "MPa")
-            return self.fact(title, "seated_closure", "mm", f"counted from {seat}")
+            words = f"counted from {seat}{self._why_no_lighter_seat()}"
+            return self.fact(title, "seated_closure", "mm", words)
         return self.fact(title, "interface_closure", "mm", "counted from first touch")
+
+    def _why_no_lighter_seat(self) -> str:
+        """Clause where suspicious cells carry loads that would seat the joint; "" if not."""
+        states = self.subject.states("closure")
+        pressure = states["nominal_pressure"].values
+        lighter = pressure < float(states["seating_pressure"]) * (1 - _ROUNDING)
+        lighter &= pressure >= self.subject.settings["seating_pressure"] * (1 - _ROUNDING)
+        if not decided_by_scan(states["suspect_load_share"].values[lighter]).any():
+            return ""
+        words = ", as suspicious cells of the scan carry most of lighter loads"
+        if self.subject["specimens"].attrs.get("outliers") == "fill":
+            return words
+        return f"{words}; 'outliers: fill' in its sidecar shows what that changes"
 
     def flow(self) -> str:
         """Hydraulic aperture in words, and what limits it."""
@@ -185,6 +222,7 @@ class _Block:
             if law.items() <= number.at.items():
                 step = with_unit(number.at["step"], "mm")
                 by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
+                by = f"whole face, brackets: 95 % of its profiles; {by}"
                 return self.written("JRC", number, "1", by)
         return Fact("JRC", "–", ["no profile is long enough"])
 
@@ -202,8 +240,22 @@ class _Block:
         lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
         lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
+        lines += [text for text in _EXPLAINED if len(rules) > 1]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
         return Fact(title, f"{' to '.join(ends)} MPa", lines)
+
+    def _holds(self, interval: str) -> str:
+        """Clause on what an interval holds: the errors of scans where there are other readings."""
+        if interval != _OF_SURFACE:
+            return _ALONE.get(interval, "")
+        if self.synthetic:
+            return " this surface"
+        sources = self.subject["error_budget"]["source"].values
+        return (
+            " with the errors of both scans"
+            if "scan" in sources
+            else " of these heights as gridded"
+        )
 
     def _of_joint(self, number: Number, size: float) -> str:
         """Half-width for the whole joint; larger than the number, it says how little is known."""
@@ -215,6 +267,22 @@ class _Block:
         solved = self.synthetic or self.subject.settings.get("twins")
         remedy = "" if solved else "; 'twins: 20' estimates it from the spectrum"
         return f"± {half} for the whole joint: more than the number itself{remedy}"
+
+    def _at_offsets(self, name: str, size: float, shown: str) -> str:
+        """Range of a number over the other offsets of one scanned face, whose own is assumed."""
+        specimen, reported = self.subject["specimens"], self.subject.reported
+        if not name or self.synthetic or specimen.attrs["opposite"] != "match":
+            return ""
+        row = row_of(name)
+        curve = reported.curves(self.subject[row.stage])[row.variable]
+        values = size * curve.sel(normal_force=reported.force, method="nearest")
+        others = values.where((values["offset"] > 0) & (values["offset"] != reported.offset))
+        others = others.dropna("offset")
+        if not others.size:
+            return ""
+        ends = " to ".join(dict.fromkeys(short(float(of)) for of in (others.min(), others.max())))
+        offsets = [short(float(others["offset"][end])) for end in (0, -1)]
+        return f"{ends}{shown} at other offsets ({' to '.join(dict.fromkeys(offsets))} mm)"
 
     def _harder(self, number: Number, size: float) -> str:
         """A number for the largest hardness of single contacts; empty where contact is elastic."""

@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.text import compact, number, with_unit
@@ -22,6 +20,8 @@ MARKS = (
     "faces scanned with common marks; or the same joint with 'outliers: fill' in its sidecar, "
     "where the change of the numbers shows the error of the scans"
 )
+#: The same of a pair whose suspicious cells are filled already.
+FILLED = "faces scanned with common marks: suspicious cells are filled already"
 LIGHTER = "lighter loads, under which less of the window touches"
 STEEP = "a laboratory test beside the computed curve; a finer scan would not help"
 CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
@@ -88,11 +88,12 @@ def _faces(subject):
     if not _is_pair(subject):
         return Light(key, title, NOT_JUDGED, "no second face was scanned")
     overlap = str(subject["quality"].attrs["overlap"])
+    helps = FILLED if subject["specimens"].attrs.get("outliers") == "fill" else MARKS
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
-        return Light(key, title, POOR, f"{load}; {overlap}", MARKS)
+        return Light(key, title, POOR, f"{load}; {overlap}", helps)
     touching = subject["quality"].sel(region="window")["overlap_cells"].item()
-    return Light(key, title, *((IN_PART, overlap, MARKS) if touching else (GOOD, overlap)))
+    return Light(key, title, *((IN_PART, overlap, helps) if touching else (GOOD, overlap)))
 
 
 def _nodes(subject):
@@ -125,7 +126,7 @@ def _grid(subject):
     errors = budget.sel(quantity="separation" if seated else "closure")
     error = float(errors["relative_error"].sel(source="numerical"))
     if seated:
-        error = _without_scan(subject, float(budget["seated_closure_relative"]))
+        error = _without_scan(subject)
     if math.isnan(error):
         why = str(errors["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_JUDGED, why)
@@ -139,21 +140,11 @@ def _grid(subject):
     return Light(key, title, word, reason, helps)
 
 
-def _without_scan(subject, relative):
-    """Relative error of the closure from the seat without the source scan, which no grid changes.
-
-    The closure is a difference of two separations, at the seat and under the reference load.
-    """
-    errors = subject["error_budget"]["error"].sel(quantity="separation")
-    if "scan" not in errors["source"]:
-        return relative
-    seated, scan = (
-        subject.states("closure")["seated_closure"].values,
-        errors.sel(source="scan").values,
-    )
-    load = subject.reported.reference
-    of_scan = np.nan_to_num([scan[load], *scan[seated == 0]]) / seated[load]
-    return math.sqrt(max(relative**2 - (of_scan**2).sum(), 0.0))
+def _without_scan(subject):
+    """Relative error of the closure from the seat without the scans', which no grid changes."""
+    budget, closure = (subject.state(stage) for stage in ("error_budget", "closure"))
+    total, scan = (float(budget[f"seated_closure_{of}"]) for of in ("total", "scan"))
+    return (total - scan) / float(closure["seated_closure"])
 
 
 def _finer(subject, excess, order):
@@ -179,8 +170,9 @@ _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 class Trust(NamedTuple):
     """Trust in a specimen.
 
-    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights, the
-    model's before others, and which others there are; ``help`` is what would help of all these.
+    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights,
+    errors of two scans before the model's and others, and which others there are; ``help`` is what
+    would help of all these.
     """
 
     word: str
@@ -194,7 +186,9 @@ def trust_of(lights: Sequence[Light]) -> Trust:
     if worst == GOOD:
         return Trust(_TRUST[GOOD], "every light that applies is good", "")
     of_worst = [light for light in lights if light.word == worst]
-    first, *others = deciding = sorted(of_worst, key=lambda light: light.key != "model")
+    first, *others = deciding = sorted(
+        of_worst, key=lambda light: (light.help not in (MARKS, FILLED), light.key != "model")
+    )
     reason = f"{first.title}: {first.reason}"
     if others:
         alike = "partly good" if worst == IN_PART else worst

@@ -103,8 +103,9 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 
     ``numbers`` is the text of all arrays; ``arrays`` has the stage, variable, units, meaning,
     dimensions, shape and start of each in it. Arrays called ``total/ROW`` are errors of all
-    sources; ``undetermined/ROW``, and for the rows ``of_joint`` ``undetermined/by_scan``, say where
-    the pages call a number undetermined. ``domains`` are texts by resolution, direction and offset.
+    sources; ``undetermined/ROW``, for the rows ``of_joint`` ``undetermined/by_scan`` and for those
+    ``of_touch`` ``undetermined/at_touch`` say where the pages call a number undetermined.
+    ``domains`` are texts by resolution, direction and offset.
     """
     subject = Subject.of(atlas, name)
     stages = dict(subject.stages)
@@ -130,6 +131,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         },
         "rows": [row.source for row in rows],
         "of_joint": [row.source for row in rows if row.by_scan],
+        "of_touch": [row.source for row in rows if row.from_touch],
         "reasons": _reasons(stages),
         "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
@@ -168,6 +170,10 @@ def _add_undetermined(numbers, stages):
     by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
     attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
     numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
+    lightest = stages["closure"]["closure"].notnull().argmax("normal_force")
+    at_touch = by_scan.isel(normal_force=lightest).broadcast_like(by_scan)
+    attrs = cf_attrs("1", "whether first touch lies on suspicious cells of the scans")
+    numbers.add("closure", "", at_touch.assign_attrs(attrs), key="undetermined/at_touch")
     for row in (row for row in shown_in("explorer") if row.dimension):
         says = xr.apply_ufunc(
             lambda *ends: Estimate(*ends, scale=DIMENSION).determined,

@@ -29,6 +29,9 @@ _BESIDE = {
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),
     "branch": ("branch", "branch", "1"),
+    "face_direction": ("direction", "face_direction", "1"),
+    "block_length": ("length", "block_length", "mm"),
+    "rule": ("rule", "rule", "1"),
     **{f"{kind}_test": ("test", f"{kind}_test", "1") for kind in TEST_COLUMNS},
 }
 #: Units of the labels of a number.
@@ -36,6 +39,8 @@ UNITS_AT = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "
 _NOT_SOLVED = "not solved under this load"
 #: Reason why a number with a narrow interval is undetermined.
 BY_SCAN = "suspicious cells of the scan carry most of the force"
+#: Reason of what counts from first touch.
+BY_TOUCH = "first touch lies on suspicious cells of the scan"
 
 
 class Number(NamedTuple):
@@ -103,6 +108,7 @@ class Row:
     zero: str = ""
     beside: tuple[str, ...] = ()
     by_scan: bool = False
+    from_touch: bool = False
     needs: tuple[str, ...] = ()
     absent: str = ""
     missing: str = "the study does not state it"
@@ -284,16 +290,20 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
         hardest = named(row.hardest)
     ends = _ends(row, subject, array, error)
     solved = named("closure/solved" if array.dims == ("normal_force",) else "", True)
-    by_scan = decided_by_scan(named("closure/suspect_load_share" if row.by_scan else ""))
+    share = named("closure/suspect_load_share" if row.by_scan else "")
+    by_scan = decided_by_scan(share)
+    at_touch = row.from_touch and _lightest_by_scan(share, value_known=np.isfinite(array.values))
     beside = {_BESIDE[str(dim)][0]: named(_beside(row, dim)) for dim in array.dims}
     beside |= {name: named(f"{row.stage}/{name}") for name in row.beside}
     for place in np.ndindex(array.shape):
         why, valid = str(reasons[place]), bool(np.nan_to_num(flags[place]))
+        if at_touch and not by_scan[place]:
+            why = why or BY_TOUCH
         value, low, high = (end[place] for end in ends)
         scale = DIMENSION if row.dimension else SIZE
         estimate = Estimate(value, low, high, reason=why, scale=scale)
         missing = _missing(row, estimate, valid, why)
-        determined = not by_scan[place]
+        determined = not (by_scan[place] or at_touch)
         if row.range or row.dimension:
             determined &= bool(estimate.known and valid and estimate.determined)
         yield Number(
@@ -303,6 +313,12 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
             determined,
             *(float(one[place]) for one in (error, population, hardest)),
         )
+
+
+def _lightest_by_scan(share: np.ndarray, value_known: np.ndarray) -> bool:
+    """True if suspicious cells carry most of the lightest load with a value; over the loads."""
+    known = np.flatnonzero(value_known)
+    return bool(known.size and decided_by_scan(share[known[0]]))
 
 
 def _missing(row: Row, estimate: Estimate, valid: bool, why: str) -> str:

@@ -5,7 +5,7 @@ specimen, on its own grid, so that their contact can be solved beside its own.
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -17,7 +17,7 @@ from ..core.settings import SpecimenSettings
 from ..gridding.faces import grid_pair
 from ..gridding.measured import Measured
 from ..scan.options import ScanOptions
-from ..states.scan_spread import OTHER_FACES, READING
+from ..states.scan_spread import MARKS, OTHER_FACES, OTHER_MARKS, READING
 from ..surface.specimen import make_specimen, window_arguments
 
 #: Registrations that are compared, the one of a sidecar and none, and treatments of outliers.
@@ -49,19 +49,24 @@ def with_other_readings(
         Scan keys of the pair.
     settings : SpecimenSettings
     """
-    on_grid: dict[str, np.ndarray] = {}
+    on_grid: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     # One at a time: of large scans each takes much memory.
     for words, other in _readings(faces, measured, options, settings):
-        heights = _on_grid(specimen, other)
-        if heights is not None:
-            on_grid[words] = heights
+        heights, marks = _on_grid(specimen, other, ("lower", "upper"), MARKS)
+        if _is_whole(specimen, heights):
+            on_grid[words] = heights, np.nan_to_num(marks, nan=1.0).astype(np.int8)
     if not on_grid:
         return specimen
-    attrs = cf_attrs("mm", "heights of both faces by another fair reading of the scans")
-    dims = (READING, "face", "y", "x")
-    every = np.stack(list(on_grid.values()))
-    coords = {READING: list(on_grid), "face": ["lower", "upper"]}
-    return specimen.assign_coords(coords).assign({OTHER_FACES: (dims, every, attrs)})
+    heights, marks = (np.stack(of) for of in zip(*on_grid.values(), strict=True))
+    of_heights = cf_attrs("mm", "heights of both faces by another fair reading of the scans")
+    of_marks = cf_attrs("1", "suspicious cells of those heights")
+    coords = {READING: list(on_grid), "face": ["lower", "upper"], "mark": list(MARKS)}
+    return specimen.assign_coords(coords).assign(
+        {
+            OTHER_FACES: ((READING, "face", "y", "x"), heights, of_heights),
+            OTHER_MARKS: ((READING, "mark", "y", "x"), marks, of_marks),
+        }
+    )
 
 
 def _readings(faces, measured, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
@@ -94,18 +99,29 @@ def _in_one_frame(faces) -> bool:
     return (record["correlation_before"] or 0.0) >= MIN_CORRELATION
 
 
-def _on_grid(specimen, other) -> np.ndarray | None:
-    """Heights (face, y, x) on the grid of a specimen; None where its window has a hole."""
+def _on_grid(specimen, other, *of: Sequence[str]) -> list[np.ndarray]:
+    """Variables of another reading on the grid of a specimen, (variable, y, x) by group of names.
+
+    NaN where the other reading has no cell.
+    """
     places = {
         axis: other.indexes[axis].get_indexer(
             specimen[axis], method="nearest", tolerance=0.25 * specimen.attrs[f"spacing_{axis}"]
         )
         for axis in "yx"
     }
-    heights = np.full((2, specimen.sizes["y"], specimen.sizes["x"]), np.nan)
     rows, columns = (np.flatnonzero(places[axis] >= 0) for axis in "yx")
-    for face, name in zip(heights, ("lower", "upper"), strict=True):
-        there = np.ix_(places["y"][rows], places["x"][columns])
-        face[np.ix_(rows, columns)] = other[name].values[there]
+    there = np.ix_(places["y"][rows], places["x"][columns])
+    groups = []
+    for names in of:
+        values = np.full((len(names), specimen.sizes["y"], specimen.sizes["x"]), np.nan)
+        for one, name in zip(values, names, strict=True):
+            one[np.ix_(rows, columns)] = other[name].values[there]
+        groups.append(values)
+    return groups
+
+
+def _is_whole(specimen, heights) -> bool:
+    """True of heights (face, y, x) without a hole in the window."""
     y, x, ny, nx = (specimen.attrs[f"window_{of}"] for of in ("y0", "x0", "ny", "nx"))
-    return heights if np.isfinite(heights[:, y : y + ny, x : x + nx]).all() else None
+    return bool(np.isfinite(heights[:, y : y + ny, x : x + nx]).all())

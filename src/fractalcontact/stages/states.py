@@ -1,6 +1,6 @@
 """Results derived from contact states of a specimen: curves, laws, domains, errors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -16,18 +16,21 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
+from ..error_budget.closure_constants import closure_constants
 from ..error_budget.error_budget import error_budget
+from ..error_budget.slid_variants import slid_variants
 from ..joint.overlap import load_warning, node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..registration.registration_scatter import stored_motions
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
 from ..states.plan import solve_plan
-from ..states.registration_spread import registration_spread
-from ..states.scan_spread import scan_spread
+from ..states.registration_spread import registration_spread, registration_values
+from ..states.scan_spread import other_readings, reading_values, scan_spread, wider_spread
 from ..states.separation import prefractal_openings
 from ..states.states import (
     DIP,
@@ -119,21 +122,50 @@ def state_stages(
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
     joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    if joint.slides:
+        variants = slid_variants(joint, reported.force)
+        stages["dilatancy"] = stages["dilatancy"].assign(variants)
     loading = joint.at_map_offset()
-    budget = error_budget(
-        loading,
-        stages["closure"],
-        stages["domains"],
-        registration_spread=registration_spread(loading),
-        scan_spread=scan_spread(loading),
-        ensemble=ensemble,
-    )
+    budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
         "branches": joint_branches(loading, stages["closure"], mapped),
         "error_budget": with_pressure(budget, area),
         "choices": plan.assign(requested_accuracy(solver)),
     }
+
+
+def reported_budget(
+    loading: JointLoading[StateSettings],
+    stages: Mapping[str, xr.Dataset],
+    reported: Reported,
+    ensemble: xr.Dataset | None = None,
+) -> xr.Dataset:
+    """Error budget at the reported state, with the errors of two scans where there are two.
+
+    Other readings of the scans and other registrations are solved at the finest resolution, as the
+    numbers are whose errors they show, and count closure from the same seat.
+    """
+    curve, factor = reported.states(stages["closure"]), reported.resolution
+    seat = float(curve["seating_pressure"]) * loading.area
+    forces = curve["normal_force"].values
+    readings = motions = of_scans = of_motions = None
+    if other_readings(loading.specimen):
+        readings = reading_values(loading, factor=factor)
+        of_scans = scan_spread(readings, forces, seat)
+    if stored_motions(loading.specimen):
+        motions = registration_values(loading, factor=factor)
+        of_motions = registration_spread(motions, forces, seat)
+    budget = error_budget(
+        loading,
+        stages["closure"],
+        stages["domains"],
+        registration_spread=of_motions,
+        scan_spread=wider_spread(of_scans, of_motions),
+        ensemble=ensemble,
+    )
+    seating = loading.settings.seating_pressure
+    return budget.assign(closure_constants(curve, seating, readings, motions))
 
 
 def requested_accuracy(solver: Solver) -> dict[str, tuple]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate, names_of
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import ALL_CRUSH, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
@@ -91,19 +91,19 @@ class Joint(Subject):
 
     @cached_property
     def yields_everywhere(self) -> bool:
-        """True if A_r = F/H within 1 %, so that the pressure is the hardness alone.
+        """True if A_r = F/H within `ALL_CRUSH`, so that the pressure is the hardness alone.
 
         In every state of ten nodes or more at the scan's own resolution, and in most of the coarser
-        ones: the area of a few nodes is not known within 1 %.
+        ones. The raw area decides: the corrected one is never below F/H, whatever the nodes bear.
         """
         hardness = self.settings["material"]["hardness"]
         curves = self["closure"]
         if not np.isfinite(hardness):
             return False
-        share = curves["area_corrected"] * hardness / curves["normal_force"]
+        share = curves["area"] * hardness / curves["normal_force"]
         share = share.where(curves["nodes"] >= RESOLVED_NODES)
         finest = share.sel(resolution=share["resolution"].min()).values
-        within = [np.abs(one[np.isfinite(one)] - 1) < 0.01 for one in (finest, share.values)]
+        within = [np.abs(one[np.isfinite(one)] - 1) < ALL_CRUSH for one in (finest, share.values)]
         return bool(within[0].size and within[0].all() and within[1].mean() > 0.5)
 
     def of_direction(self, name: str) -> np.ndarray:

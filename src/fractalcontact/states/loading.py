@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -20,6 +20,17 @@ from .states import chosen_offset, forces_of, hardness_of
 #: Settings of a joint, with the further fields that the receiver of a loading reads.
 P = TypeVar("P", bound=JointSettings, covariant=True)
 Q = TypeVar("Q", bound=JointSettings)
+
+
+class Variant(NamedTuple):
+    """Variant of the faces of a joint: its name, composite topography (mm) and suspicious nodes.
+
+    Both arrays are (ny, nx), at the spacing of the scan.
+    """
+
+    name: str
+    composite: np.ndarray
+    suspicious: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +136,10 @@ class JointLoading(Generic[P]):
     def suspect_nodes(self, cells: int) -> np.ndarray:
         """Nodes (ny, nx) bool of that topography with suspicious cells of the scans in them."""
         return suspect_nodes(self.specimen, self.direction, cells)
+
+    def variant(self, name: str, cells: int) -> Variant:
+        """That topography with its suspicious nodes and a name."""
+        return Variant(name, self.composite(cells), self.suspect_nodes(cells))
 
     def contact_dips(self, cells: int, factor: int) -> list[np.ndarray]:
         """Apparent dips of the pre-fractal's nodes along the sliding, by step; none on a plane."""

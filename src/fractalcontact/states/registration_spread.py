@@ -1,6 +1,6 @@
 """Registration error of two scanned faces: spread over registrations that are as good."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +11,11 @@ from ..core.settings import Load
 from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .loading import JointLoading
-from .separation import ROUNDING
 from .subgrid import QUANTITIES as OF_STATES
-from .subgrid import composite_quantities
+from .subgrid import closure_from, composite_quantities
 
 #: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
-#: first load at the seat or beyond, mm.
+#: seat, mm.
 QUANTITIES = (*OF_STATES, "seated_closure")
 
 
@@ -36,38 +35,36 @@ def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
 
 
 def registration_values(
-    loading: JointLoading, loads: Sequence[Load] | None = None
+    loading: JointLoading, loads: Sequence[Load] | None = None, factor: int = 1
 ) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness of each registration that is as good.
 
-    Arrays (motion, load) by :data:`QUANTITIES`, under the study's loads unless others are given;
-    empty along the motions where the specimen holds none. The first four are those of
-    :func:`states.subgrid.composite_quantities`. Raises `NotConverged`.
+    Arrays (motion, load) of :func:`states.subgrid.composite_quantities` at ``factor`` times the
+    scan's spacing, under the study's loads unless others are given; empty along the motions where
+    the specimen holds none. Raises `NotConverged`.
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
     motions = stored_motions(loading.specimen)
     moved = (moved_specimen(loading.specimen, motion) for motion in motions)
-    composites = (
-        ("another registration", replace(loading, specimen=specimen).composite(int(cells)))
+    variants = (
+        replace(loading, specimen=specimen).variant("another registration", int(cells))
         for specimen in moved
     )
-    values = composite_quantities(loading, composites, forces)
-    seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
-    seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
-    closure = values["closure"]
-    return values | {"seated_closure": closure - closure[:, [seat]]}
+    return composite_quantities(loading, variants, forces, factor)
 
 
 def registration_spread(
-    loading: JointLoading, loads: Sequence[Load] | None = None
+    values: Mapping[str, np.ndarray], forces: np.ndarray, seat: float
 ) -> dict[str, np.ndarray] | None:
     """Registration error: half-widths of the 95 % spread over registrations that are as good.
 
     Parameters
     ----------
-    loading, loads
-        As for :func:`registration_values`.
+    values
+        From :func:`registration_values`, under these ``forces`` (load,), N.
+    seat : float
+        Force from which the closure is seated, N; NaN for none.
 
     Returns
     -------
@@ -75,20 +72,16 @@ def registration_spread(
         By :data:`QUANTITIES`, in their units. None of a specimen that holds no further motions: one
         face, faces given in one frame, or faces that do not match.
 
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
-
     Notes
     -----
     All registrations are interpolated alike, so their spread does not hold what that smooths away.
     """
-    values = registration_values(loading, loads)
     count = len(values["closure"])
     if count < 2:
         return None
+    compared = {name: values[name] for name in OF_STATES}
+    compared["seated_closure"] = closure_from(values["closure"], forces, seat)
     return {
         name: t_quantile(count - 1) * of_motions.std(axis=0, ddof=1)
-        for name, of_motions in values.items()
+        for name, of_motions in compared.items()
     }

@@ -1,6 +1,6 @@
 """Scan error of two scanned faces: spread over fair readings of their scans."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,64 +8,92 @@ import xarray as xr
 
 from ..core.settings import Load
 from .loading import JointLoading
-from .subgrid import composite_quantities
+from .subgrid import QUANTITIES, closure_from, composite_quantities
 
 #: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
 OTHER_FACES = "other_faces"
 #: Their dimension.
 READING = "reading"
+#: Suspicious cells (reading, mark, y, x) of those heights, by these variables of a specimen.
+OTHER_MARKS = "other_marks"
+MARKS = ("suspect_lower", "suspect_upper", "overlap")
 
 
 def other_readings(specimen: xr.Dataset) -> dict[str, xr.Dataset]:
     """The specimen by each other reading of its scans; empty where it has none."""
     if OTHER_FACES not in specimen:
         return {}
+    names = [str(name) for name in specimen[READING].values]
+    parts = {face: specimen[OTHER_FACES].sel(face=face) for face in ("lower", "upper")}
+    if OTHER_MARKS in specimen:
+        parts |= {mark: specimen[OTHER_MARKS].sel(mark=mark) for mark in MARKS}
     return {
-        str(words): specimen.assign(
+        name: specimen.assign(
             {
-                face: specimen[face].copy(data=heights.sel(face=face).values)
-                for face in ("lower", "upper")
+                of: specimen[of].copy(data=part.sel({READING: name}).values)
+                for of, part in parts.items()
             }
         )
-        for words, heights in zip(
-            specimen[READING].values, specimen[OTHER_FACES].transpose(READING, ...), strict=True
-        )
+        for name in names
     }
 
 
 def reading_values(
-    loading: JointLoading, loads: Sequence[Load] | None = None
+    loading: JointLoading, loads: Sequence[Load] | None = None, factor: int = 1
 ) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness by this reading and each other one.
 
-    Arrays (reading, load) of :func:`states.subgrid.composite_quantities`, this reading first, under
-    the study's loads unless others are given. A reading whose faces have a hole where the window
-    slides is left out. Raises `NotConverged`.
+    Arrays (reading, load) of :func:`states.subgrid.composite_quantities` at ``factor`` times the
+    scan's spacing, this reading first, under the study's loads unless others are given. A reading
+    whose faces have a hole where the window slides is left out. Raises `NotConverged`.
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
     readings = {"this one": loading.specimen, **other_readings(loading.specimen)}
-    composites = (
-        (words, replace(loading, specimen=specimen).composite(int(cells)))
-        for words, specimen in readings.items()
+    variants = (
+        replace(loading, specimen=specimen).variant(name, int(cells))
+        for name, specimen in readings.items()
     )
-    whole = ((words, h) for words, h in composites if np.isfinite(h).all())
-    return composite_quantities(loading, whole, forces)
+    whole = (variant for variant in variants if np.isfinite(variant.composite).all())
+    return composite_quantities(loading, whole, forces, factor)
 
 
 def scan_spread(
-    loading: JointLoading, loads: Sequence[Load] | None = None
+    values: Mapping[str, np.ndarray], forces: np.ndarray, seat: float
 ) -> dict[str, np.ndarray] | None:
     """Scan error: largest distance of the other readings from this one.
 
     Not a half-width of chance: readings are few, and none is more likely than another.
 
-    Distances (load,) by :data:`states.subgrid.QUANTITIES`, in their units; None without another
-    reading. Raises `NotConverged`.
+    Parameters
+    ----------
+    values
+        From :func:`reading_values`, under these ``forces`` (load,), N.
+    seat : float
+        Force from which the closure is seated, N; NaN for none.
+
+    Returns
+    -------
+    dict of str to (load,) ndarray, or None
+        Distances by :data:`states.subgrid.QUANTITIES`, and of the closure from the seat, in their
+        units; None without another reading.
     """
-    if not other_readings(loading.specimen):
-        return None
-    values = reading_values(loading, loads)
     if len(values["closure"]) < 2:
         return None
-    return {name: np.abs(of[1:] - of[0]).max(axis=0) for name, of in values.items()}
+    compared = {name: values[name] for name in QUANTITIES}
+    compared["seated_closure"] = closure_from(values["closure"], forces, seat)
+    return {name: np.abs(of[1:] - of[0]).max(axis=0) for name, of in compared.items()}
+
+
+def wider_spread(
+    readings: Mapping[str, np.ndarray] | None, motions: Mapping[str, np.ndarray] | None
+) -> dict[str, np.ndarray] | None:
+    """Errors of two scans (load,) by quantity: the larger of two; None without either.
+
+    ``readings`` are from :func:`scan_spread`, ``motions`` from
+    :func:`states.registration_spread.registration_spread`.
+    """
+    if readings is None or motions is None:
+        only = motions if readings is None else readings
+        return None if only is None else dict(only)
+    return {name: np.fmax(of, motions[name]) for name, of in readings.items()}

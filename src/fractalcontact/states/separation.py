@@ -11,9 +11,11 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled
+from ..core.determined import decided_by_scan
 from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..joint.joint import composite_topography, prefractal
+from ..joint.overlap import on_sound_cells
 from .states import error_attrs
 
 
@@ -108,17 +110,18 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     """Add the closures from a seating pressure, of each offset and of all, to a closure stage.
 
     At each offset and resolution the first load from the study's seating pressure on, MPa, whose
-    state is resolved seats the joint. ``seated_closure`` counts from the seating load of its own
-    offset, so that each curve begins as early as it can. Closures of several offsets compare only
-    from one pressure on: ``closure_from_common_seat`` counts from the largest of these loads, at
-    which enough nodes touch at all offsets that have one. Those of several resolutions do from the
-    stated pressure: ``closure_from_stated_seat`` counts from the first load from there on. Below
+    state is resolved and rests on sound cells of the scans seats the joint. ``seated_closure``
+    counts from the seating load of its own offset, so that each curve begins as early as it can.
+    Closures of several offsets compare only from one pressure on: ``closure_from_common_seat``
+    counts from the largest of these loads, at which enough nodes touch at all offsets that have
+    one. Those of several resolutions do from the stated pressure: ``closure_from_stated_seat``
+    counts from the first load from there on. Below
     its load a closure has no value, nor where the state under that load was not solved.
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])
     heavy = curves["nominal_pressure"] >= seating_pressure * (1 - ROUNDING)
-    seats = force.where(curves["resolved"] & solved & heavy).min("normal_force")
+    seats = force.where(on_sound_cells(curves) & solved & heavy).min("normal_force")
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")
     _add_closure_from(curves, common, "closure_from_common_seat")
@@ -128,6 +131,8 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:
         none += f" at {seating_pressure:g} MPa or more"
+    if decided_by_scan(curves["suspect_load_share"]).any():
+        none += " with most of the force on sound cells of the scans"
     seating = {
         "seating_pressure": seats / area,
         "common_seating_pressure": common / area,

@@ -9,7 +9,11 @@ from numpy.typing import ArrayLike
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
-from .loading import JointLoading
+from ..core.determined import decided_by_scan
+from ..core.limits import RESOLVED_NODES
+from ..joint.joint import prefractal
+from ..joint.overlap import suspect_load_share
+from .loading import JointLoading, Variant
 from .settlement import bulk_settlement, interface_closure
 from .state_scalars import state_area
 from .sweep import load_steps
@@ -21,6 +25,9 @@ QUANTITIES = {
     "area_corrected": ("mm2", "real contact area, corrected for its edge"),
     "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),
 }
+
+#: Key of what says whether fits take a state: 1 or 0.
+SOUND = "sound"
 
 #: Nodes around which the summit of the spline is looked for, and points per cell there. The spline
 #: rises above its nodes by a few tenths of the difference between neighbours, so that a node much
@@ -86,22 +93,44 @@ def subgrid_states(
 
 
 def composite_quantities(
-    loading: JointLoading, composites: Iterable[tuple[str, np.ndarray]], forces: np.ndarray
+    loading: JointLoading, variants: Iterable[Variant], forces: np.ndarray, factor: int = 1
 ) -> dict[str, np.ndarray]:
-    """The :data:`QUANTITIES` (composite, load) of a joint by other composite topographies of it.
+    """The :data:`QUANTITIES` and :data:`SOUND` (variant, load) of a joint by variants of its faces.
 
-    Composites have a name, for errors. The separation is max h - mean h - w: that of the mean
-    planes within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
+    Every ``factor``-th node is taken. The separation is max h - mean h - w: that of the mean planes
+    within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
     """
-    space, rows = loading.half_space(loading.shape), []
-    for name, composite in composites:
-        where = f"specimen {loading.specimen.attrs['name']}, {name}"
+    names, rows = (*QUANTITIES, SOUND), []
+    for variant in variants:
+        composite = prefractal(variant.composite, factor)
+        suspicious = prefractal(variant.suspicious, factor)
+        space = loading.half_space(composite.shape, factor)
+        where = f"specimen {loading.specimen.attrs['name']}, {variant.name}"
         states = load_steps(composite, space, forces, loading.solving, where)
         datum = float(composite.max()), float(composite.mean())
-        of_loads = [state_quantities(state, *datum) for state in states]
-        rows.append([[of_state[name] for name in QUANTITIES] for of_state in of_loads])
-    table = np.reshape(rows, (len(rows), len(forces), len(QUANTITIES)))
-    return dict(zip(QUANTITIES, np.moveaxis(table, -1, 0), strict=True))
+        of_loads = [
+            state_quantities(state, *datum) | {SOUND: is_sound(state, suspicious)}
+            for state in states
+        ]
+        rows.append([[of_state[name] for name in names] for of_state in of_loads])
+    table = np.reshape(rows, (len(rows), len(forces), len(names))).astype(float)
+    return dict(zip(names, np.moveaxis(table, -1, 0), strict=True))
+
+
+def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.ndarray:
+    """Closures (variant, load) counted from the force of the seat, N; NaN without one and below."""
+    seats = np.flatnonzero(np.isclose(forces, seat, rtol=1e-6, atol=0))
+    if not seats.size:
+        return np.full(closure.shape, np.nan)
+    seated = closure - closure[:, seats[:1]]
+    return np.where(forces >= forces[seats[0]], seated, np.nan)
+
+
+def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
+    """True of a state that fits take, as :func:`joint.overlap.on_sound_cells` of stored ones."""
+    enough = np.count_nonzero(state.in_contact) >= RESOLVED_NODES
+    share = suspect_load_share(state.pressure, suspicious)
+    return bool(enough and not decided_by_scan(share))
 
 
 def state_quantities(

@@ -70,12 +70,13 @@ def resolve_settings(
         "known_dimension": float(recipe.get("dimension", math.nan)),
         "chosen_for": dict(recipe.get("chosen_for", {})),
         "twins": layers.twins(),
+        "block_lengths": sorted(said.get("block_lengths", [])),
         "capped_variant": is_capped_variant(config, name),
         "material": material,
         "opposite": opposite,
         "directions": directions,
         "contact_directions": directions if flat else said.get("contact_directions", directions),
-        "offsets": [0.0] if flat else said.get("offsets"),
+        "offsets": [0.0] if flat else layers.offsets(),
         "loads": loads,
         "resolutions": sorted(said["resolutions"]),
         "dilatancy_loads": layers.chosen_loads("dilatancy_loads", loads),
@@ -151,11 +152,19 @@ class _Layers:
         most = LARGEST_SHARE * hardness
         return [load for load in loads if load[1] == "force" or load[0] <= most] or loads
 
+    def _is_pair(self):
+        return bool(self._scan and self._scan.upper)
+
+    def offsets(self):
+        """Offsets that are solved, mm; two faces are solved as they were scanned, too."""
+        offsets = self.values.get("offsets")
+        if offsets is None or not self._is_pair() or "map_offset" in self.values:
+            return offsets
+        return sorted({0.0, *offsets})
+
     def reported_offset(self):
         """Offset that is reported; by default two faces are reported as they were scanned."""
-        offsets = self.values.get("offsets")
-        as_scanned = self._scan and self._scan.upper and (offsets is None or 0.0 in offsets)
-        return self.values.get("map_offset", 0.0 if as_scanned else None)
+        return self.values.get("map_offset", 0.0 if self._is_pair() else None)
 
     def chosen_loads(self, key, loads):
         """Loads that a key names among the solved ones; the three largest without it.

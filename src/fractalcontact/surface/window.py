@@ -78,7 +78,8 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
     if automatic and slides(specimen.attrs["opposite"]):
-        notes.append(f"{_share(specimen, shape)} of the face, so that it can slide")
+        share = _share(specimen, shape)
+        notes.append(f"{share} of the face, so that it can slide{_larger(specimen, shape)}")
     elif automatic:
         notes.append(f"the largest square without holes, {_share(specimen, shape)} of the face")
     if shape != wanted.cells:
@@ -106,6 +107,21 @@ def _half_of_largest_square(specimen) -> _Wanted:
     cells = tuple(n // part for n in square)
     sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
     return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
+
+
+def _larger(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
+    """Clause with the key of a window that uses more of the face and slides less.
+
+    Half of the largest square without holes is the window: of one half as large again an eighth of
+    that square is left to slide by.
+    """
+    half = min(n * s for n, s in zip(shape, spacing_of(specimen), strict=True))
+    side = float(f"{1.5 * half:.2g}")
+    cells = [int(side / s) for s in spacing_of(specimen)]
+    return (
+        f"; 'window: {side:.6g} mm' uses {_share(specimen, tuple(cells))} and slides by up to "
+        f"{half - side / 2:.2g} mm"
+    )
 
 
 def _share(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:

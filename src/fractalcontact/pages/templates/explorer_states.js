@@ -90,8 +90,8 @@ class States {
   /** Whether the result page calls a number undetermined: "interval" or "scan" decides, "" if not. */
   undetermined(key, place) {
     if (this.at(`undetermined/${key}`, place) === 1) return "interval";
-    const byScan = this.raw.of_joint.includes(key) && this.at("undetermined/by_scan", place) === 1;
-    return byScan ? "scan" : "";
+    const says = (rows, mask) => this.raw[rows].includes(key) && this.at(`undetermined/${mask}`, place) === 1;
+    return says("of_joint", "by_scan") || says("of_touch", "at_touch") ? "scan" : "";
   }
   /** What `make` gives, made once. */
   async once(key, make) {

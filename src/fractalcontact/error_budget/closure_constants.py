@@ -1,0 +1,126 @@
+"""Constants of the closure laws from the seat, with the errors of two scans in their intervals."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..core.estimate import Estimate
+from ..core.intervals import t_quantile
+from ..laws.closure_laws import fit_hyperbola, fit_semi_logarithmic
+from ..laws.seated_laws import within_span
+from ..states.separation import ROUNDING
+from ..states.subgrid import SOUND
+
+#: Constants by name: variable of the stage ``closure``, unit, long name.
+CONSTANTS = {
+    "k_ni": ("seated_k_ni", "MPa/mm", "initial stiffness k_ni of the hyperbola from the seat"),
+    "v_m": ("seated_v_m", "mm", "asymptote v_m of the hyperbola from the seat"),
+    "chi": ("seated_chi", "mm", "chi of the logarithm from the seat"),
+}
+_HOLDS = "interval of the fit and, of two scans, of their errors"
+
+
+def closure_constants(
+    curve: xr.Dataset,
+    seating_pressure: float,
+    readings: Mapping[str, np.ndarray] | None,
+    motions: Mapping[str, np.ndarray] | None,
+) -> dict[str, tuple]:
+    """Constants of one closure curve, as ``xr.Dataset`` takes them.
+
+    Parameters
+    ----------
+    curve : xr.Dataset
+        The stage ``closure`` at one state, over the loads.
+    seating_pressure : float
+        That of the study, MPa.
+    readings, motions : mapping of str to (variant, load) ndarray, or None
+        From :func:`states.scan_spread.reading_values`, this reading first, and from
+        :func:`states.registration_spread.registration_values`; None of what is no pair.
+
+    Notes
+    -----
+    Every variant is seated and fitted as this one is: from its own lightest load that fits take.
+    To the interval of the fit the larger of two is added: the distance of the farthest reading, and
+    the 95 % spread over registrations. Where other readings exist and none can be fitted, the
+    interval is unbounded.
+    """
+    pressure = curve["nominal_pressure"].values
+    apart = {
+        name: np.fmax(_farthest(of_readings, own), _spread(of_motions))
+        for name, own, of_readings, of_motions in (
+            (
+                name,
+                float(curve[variable]),
+                _constants(readings, pressure, seating_pressure)[name][1:],
+                _constants(motions, pressure, seating_pressure)[name],
+            )
+            for name, (variable, *_) in CONSTANTS.items()
+        )
+    }
+    variables: dict[str, tuple] = {}
+    for name, (variable, unit, words) in CONSTANTS.items():
+        value, low, high = Estimate.read(curve, variable).ends
+        half = 0.0 if np.isnan(apart[name]) else apart[name]
+        wider = Estimate(
+            value,
+            np.maximum(low - half, 0.0),
+            high + half,
+        )
+        variables |= wider.variables(name, (), unit, f"{words}, {_HOLDS}")
+    return variables
+
+
+def _constants(
+    values: Mapping[str, np.ndarray] | None, pressure: np.ndarray, seating_pressure: float
+) -> dict[str, np.ndarray]:
+    """Constants (variant,) by name; NaN of a variant that has no fit."""
+    variants = (
+        []
+        if values is None
+        else [
+            seated_constants(pressure, closure, sound > 0, seating_pressure)
+            for closure, sound in zip(values["closure"], values[SOUND], strict=True)
+        ]
+    )
+    return {name: np.array([of[name] for of in variants]) for name in CONSTANTS}
+
+
+def seated_constants(
+    pressure: np.ndarray, closure: np.ndarray, sound: np.ndarray, seating_pressure: float
+) -> dict[str, float]:
+    """Constants of a closure curve (load,), mm, from its lightest sound load at the seat or above.
+
+    Pressures (load,) and that of the seat are in MPa; ``sound`` (load,) are the states that fits
+    take. As of :mod:`laws.seated_laws`.
+    """
+    seats = np.flatnonzero(sound & (pressure >= seating_pressure * (1 - ROUNDING)))
+    if not seats.size:
+        return dict.fromkeys(CONSTANTS, np.nan)
+    seat = pressure[seats[0]]
+    seated = closure - closure[seats[0]]
+    fitted = sound & (seated > 0) & (pressure > seat) & within_span(pressure, seat)
+    hyperbola = fit_hyperbola(pressure[fitted], seated[fitted], seat)
+    logarithm = fit_semi_logarithmic(pressure[fitted], seated[fitted])
+    return {
+        "k_ni": float(hyperbola.k_ni.value),
+        "v_m": float(hyperbola.w_m.value),
+        "chi": float(logarithm.b.value),
+    }
+
+
+def _farthest(values: np.ndarray, own: float) -> float:
+    """Largest distance of other readings from a value; infinite where none of them has one."""
+    if not values.size:
+        return np.nan
+    known = values[np.isfinite(values)]
+    return float(np.abs(known - own).max()) if known.size else np.inf
+
+
+def _spread(values: np.ndarray) -> float:
+    """Half-width at 95 % of the spread over registrations; NaN below two."""
+    known = values[np.isfinite(values)]
+    if known.size < 2:
+        return np.nan
+    return float(t_quantile(known.size - 1) * known.std(ddof=1))
