@@ -1,10 +1,12 @@
 """Quantities as people write them."""
 
+import itertools
 import math
 import time
 
 import pytest
 
+from fractalcontact.core import units
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.units import length_factor, length_unit, load, quantity
 
@@ -25,6 +27,33 @@ from fractalcontact.core.units import length_factor, length_unit, load, quantity
 )
 def test_known_quantities(text, kind, value):
     assert quantity(text, kind, "key") == pytest.approx(value, rel=1e-12)
+
+
+#: Numbers as studies have them, some with more digits than a double.
+NUMBERS = ("20", "0.1", "12.5", "3.", "1e3", "7.3e-2", "0.0390625", "9007199254740993", "0.3")
+
+
+@pytest.mark.parametrize("unit", units._COMMON)
+def test_common_units_are_those_of_the_library_to_the_last_bit(unit):
+    """A common unit of one kind is none of the other kinds, in the library's words."""
+    own = units._COMMON[unit][0]
+    for kind, number in itertools.product(units.PROGRAM_UNITS, NUMBERS):
+        text, wanted = f"{number} {unit}", units._wanted(kind)
+        if kind == own:
+            assert quantity(text, kind, "k") == units._by_library(text, kind, wanted)
+            continue
+        with pytest.raises(InputError) as by_library:
+            units._by_library(text, kind, wanted)
+        with pytest.raises(InputError) as common:
+            units.magnitude(text, kind)
+        assert str(common.value) == str(by_library.value)
+
+
+def test_common_units_need_no_library(monkeypatch):
+    monkeypatch.setattr(units, "_registry", None)
+    units.magnitude.cache_clear()
+    assert load("2.5 MPa", "k") == (2.5, "pressure")
+    assert quantity("80 µm", "length", "k") == pytest.approx(0.08)
 
 
 @pytest.mark.parametrize("text", ["20", 20, "20 MPa", "20 mmm", "", None, "__import__('os')"])

@@ -20,7 +20,7 @@ def test_numbers_of_a_short_logarithmic_axis_stand_apart(ratio):
     for low in np.geomspace(0.11, 10, 12):
         with print_style():
             figure = Figure(figsize=(7.2, 3.4), layout="constrained")
-            axes = figure.subplots(1, 3)[0]
+            axes = figure.add_subplot(1, 3, 1)
             axes.plot([low, low * ratio], [1, 2])
             axes.set(xscale="log", xlim=(low, low * ratio))
             canvas = lay_out(figure)

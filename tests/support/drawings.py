@@ -141,20 +141,27 @@ def strangers(table, column, variables):
     The places are those dimensions of the variable that all rows of a panel have as columns.
     """
     found = []
+    wholes = [_with_places(data, variable) for data, variable in variables]
+    columns = {column}.union(*(names for names, _ in wholes)) & {*table}
     for _, rows in table.groupby("panel") if "panel" in table else [("", table)]:
         rows = rows[rows[column].notna()]
         known = np.zeros(len(rows), bool)
-        for data, variable in variables if len(rows) else ():
-            names = {column_of(data, dim): dim for dim in data[variable].dims}
-            keys = [key for key in names if key in rows and rows[key].notna().all()]
-            values = xr.DataArray(data[variable]).reset_coords(drop=True).expand_dims("whole")
-            values = values.to_series().rename("its value").reset_index()
-            stored = [digits(values[names[key]]) for key in keys]
-            stored = {*zip(*stored, digits(values["its value"]), strict=True)}
-            places = zip(*(digits(rows[key]) for key in (*keys, column)), strict=True)
+        held = {key: digits(rows[key]) for key in columns if rows[key].notna().all()}
+        for names, values in wholes if len(rows) else ():
+            keys = [key for key in names if key in held]
+            stored = {*zip(*(values[names[key]] for key in keys), values["its value"], strict=True)}
+            places = zip(*(held[key] for key in (*keys, column)), strict=True)
             known |= [one in stored for one in places]
         found += rows[column][~known].tolist()
     return found
+
+
+def _with_places(data, variable):
+    """Dimensions of a variable by their columns, and digits of its values and their places."""
+    names = {column_of(data, dim): dim for dim in data[variable].dims}
+    values = xr.DataArray(data[variable]).reset_coords(drop=True).expand_dims("whole")
+    values = values.to_series().rename("its value").reset_index()
+    return names, {name: digits(values[name]) for name in (*names.values(), "its value")}
 
 
 def content_of(drawing):

@@ -84,6 +84,7 @@ def _entries():
 
 def lost(table, atlas, figure, subject):
     """Columns of arrays drawn that are incomplete in a figure's table, with the missing values."""
+    of = Subject.of(atlas, subject) if isinstance(subject, str) else None
     for entry in _entries().get(figure, ()):
         if subject not in entry.get("of", [subject]):
             continue
@@ -98,16 +99,14 @@ def lost(table, atlas, figure, subject):
                     # Readings of a laboratory are drawn without bars, which would hide them.
                     ends = names_of(name) if stage != "measured" else (name,)
                     for end in (one for one in ends if one in data):
-                        yield from _absent(rows, data, end, atlas, subject, entry)
+                        yield from _absent(rows, data, end, of, entry)
 
 
-def _absent(rows, data, name, atlas, subject, entry):
+def _absent(rows, data, name, of, entry):
     """The column of a variable, if its rows lack a value at its place."""
     column, values = column_of(data, name), data[name]
     places = {
-        dim: _places(dim, data, atlas, subject, entry.get(dim))
-        for dim in values.dims
-        if isinstance(subject, str) or dim in entry
+        dim: _places(dim, data, of, entry.get(dim)) for dim in values.dims if of or dim in entry
     }
     if "where" in entry:
         values = values.where(data[entry["where"]].notnull())
@@ -125,14 +124,13 @@ def _absent(rows, data, name, atlas, subject, entry):
         yield f"{column}: {len(absent)} of {len(wanted)} lost, such as {absent[0]}"
 
 
-def _places(dim, data, atlas, subject, wanted):
+def _places(dim, data, of, wanted):
     """Indices along a dimension that an entry asks for."""
     n = data.sizes[dim]
     if isinstance(wanted, int):
         return np.unique(np.round(np.linspace(0, n - 1, min(wanted, n))).astype(int))
     if isinstance(wanted, list):
         return np.flatnonzero(data[dim].isin(wanted))
-    of = Subject.of(atlas, subject)
     if dim in ("direction", "contact_direction") and wanted is None:
         return np.flatnonzero(data[dim] == of.direction)
     if dim == "resolution" and wanted is None:
@@ -198,8 +196,15 @@ def _in_rows(rows, x, y, figure):
 
 def _holding(rows, values, rtol=1e-6):
     """Columns that hold all values in one unit: their rows, (row, value) bool."""
+    # Most columns lack a value, which their sorted numbers show without comparing every pair.
+    reach = (1 + 1e-6) * rtol * np.abs(values)
     for _, column in rows.items():
+        numbers = column.to_numpy()
+        ordered = np.sort(numbers[np.isfinite(numbers)])
         for factor in FACTORS:
-            same = np.isclose(column.to_numpy()[:, None] * factor, values, rtol=rtol, atol=0)
+            first = np.searchsorted(ordered * factor, values - reach, "left")
+            if not (np.searchsorted(ordered * factor, values + reach, "right") > first).all():
+                continue
+            same = np.isclose(numbers[:, None] * factor, values, rtol=rtol, atol=0)
             if same.any(axis=0).all():
                 yield same

@@ -30,6 +30,8 @@ class Code:
         self.folder, self.root = os.path.abspath(folder), os.path.abspath(root)
         self.beside = os.path.abspath(beside) if beside else ""
         self._read = cache(_read)
+        # Some dozen digests of a run follow the same files.
+        self._imports = cache(lambda file, whole: [*self._followed(file, whole)])
 
     def digest(self, *names: Path | str) -> str:
         """Sixteen digits that change with any file behind these names and the libraries they use.
@@ -55,7 +57,7 @@ class Code:
                 files = self._rooms[place] if whole else [place, *self._inits(place)]
                 found.update(files)
                 for file in files:
-                    queue += self._followed(file, whole)
+                    queue += self._imports(file, whole)
         return found
 
     def _inits(self, file: str) -> list[str]:

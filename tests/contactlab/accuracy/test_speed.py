@@ -94,9 +94,12 @@ def test_others_are_ahead_only_below_the_error_and_on_the_front():
 
 
 @pytest.mark.parametrize(
-    "small", [rough_problem(40, 0.5, 0.1, 2), hertz_problem(40), punch_problem(41)]
+    "problem_of",
+    [lambda: rough_problem(40, 0.5, 0.1, 2), lambda: hertz_problem(40), lambda: punch_problem(41)],
+    ids=["rough", "hertz", "punch"],
 )
-def test_reference_is_as_close_to_elimination_as_it_says(small):
+def test_reference_is_as_close_to_elimination_as_it_says(problem_of):
+    small = problem_of()
     own = small.single.own_error(small.height)
     assert 0 < own < 1e-11
     assert small.eliminated() <= own + 1e-12
