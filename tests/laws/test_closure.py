@@ -10,6 +10,7 @@ from fractalcontact.core.settings import Solver
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.core.window import window_sides
 from fractalcontact.joint.joint import composite_topography, describe_joint
+from fractalcontact.joint.openings import prefractal_openings
 from fractalcontact.laws.closure import (
     FLUSH_FACES,
     FULL_CONTACT,
@@ -313,7 +314,7 @@ SOLVER = Solver(1e-7, "love", None)
 def test_a_missing_stiffness_has_its_reason_and_none_is_negative():
     total = xr.DataArray([1.0, 3.0, np.nan, 1.0], dims="state")
     flush = xr.DataArray([False, False, False, True], dims="state")
-    found = interface_stiffness(total, xr.full_like(total, 2.0)).where(~flush)
+    found = interface_stiffness(1 / total, 1 / 2.0).where(~flush)
     np.testing.assert_allclose(found, [2.0, np.nan, np.nan, np.nan])
     reasons = stiffness_reason(found, total, flush).values.tolist()
     assert reasons == ["", FULL_CONTACT, SINGLE_CELLS, FLUSH_FACES]

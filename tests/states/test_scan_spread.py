@@ -4,14 +4,9 @@ import numpy as np
 import pytest
 from tiny_pairs import loading_of, pair
 
-from fractalcontact.states.scan_spread import (
-    OTHER_FACES,
-    READING,
-    other_readings,
-    reading_values,
-    scan_spread,
-)
-from fractalcontact.states.subgrid import QUANTITIES
+from fractalcontact.scan.other_readings import OTHER_FACES, READING, other_readings
+from fractalcontact.states.scan_spread import reading_values, scan_spread
+from fractalcontact.states.subgrid import STATE_QUANTITIES
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -34,7 +29,7 @@ def test_a_single_reading_has_no_spread():
 
 def test_readings_that_differ_by_their_height_alone_have_no_spread():
     spread = scan_spread(loading(np.full((48, 48), 0.3)))
-    assert spread.keys() == set(QUANTITIES)
+    assert spread.keys() == set(STATE_QUANTITIES)
     for name, of in spread.items():
         np.testing.assert_allclose(of, 0, atol=1e-6, err_msg=name)
 

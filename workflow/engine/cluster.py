@@ -45,7 +45,7 @@ def left_in_queue(profile):
         *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
         failed = done.returncode
     except OSError:
-        return []  # there is no cluster: to submit a job says so, and why
+        return []  # without a cluster, submitting a job says so, and why
     except subprocess.TimeoutExpired:
         failed, why = True, f"no answer in {PATIENCE} s"
     if failed:

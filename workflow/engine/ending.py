@@ -26,5 +26,5 @@ def answer_in_thread(number: int = signal.SIGTERM) -> None:
 
 
 def _answer(answer, told):
-    TOLD.set()  # here, as the event has such a lock too
+    TOLD.set()  # set in this thread, because the event has such a lock too
     answer(*told)

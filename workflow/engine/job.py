@@ -52,7 +52,9 @@ def job(snakemake):
         if _told_to_stop:  # the work may have taken the interrupt for an error of its own
             raise KeyboardInterrupt
         checksums.record(results, _below(results, snakemake.output))
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
+        signal.signal(
+            signal.SIGTERM, signal.SIG_IGN
+        )  # the work is done: the job ends at once anyway
         log.info(
             "%s %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, "
             "memory %.0f MB",
@@ -60,7 +62,7 @@ def job(snakemake):
             time.perf_counter() - begin,
             SOLVING.seconds,
             SOLVING.problems,
-            time.process_time(),  # imports counted, but where they were loaded before its fork
+            time.process_time(),  # includes imports, except those loaded before the fork
             resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KILOBYTE / 1e6,
         )
     except (InputError, NotConverged, OutputError) as error:

@@ -91,8 +91,8 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
                 shortest = 2 if arm == "G" else recipe["cut_off"]
                 for cut_off in stated.get("cut_offs", [shortest]):
                     for construction in stated.get("constructions", [""]):
-                        one = arm, hurst, size, cut_off, construction
-                        tasks += _of_class(*one, surfaces, recipe)
+                        of_class = arm, hurst, size, cut_off, construction
+                        tasks += _of_class(*of_class, surfaces, recipe)
     return sorted(tasks, key=lambda task: -task.nodes)
 
 

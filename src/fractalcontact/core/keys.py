@@ -340,8 +340,8 @@ def _sentence(
     """Sentence on one error: the key, what stands there, the expected value, the nearest key."""
     name = ".".join(filter(None, (above, *map(str, path))))
     if error["type"] == "extra_forbidden":
-        known = _nodes(section, path[:-1])[-1].get("properties", {})
-        return f"unknown key '{shortened(name)}'{nearest(path[-1], known)}"
+        allowed = _nodes(section, path[:-1])[-1].get("properties", {})
+        return f"unknown key '{shortened(name)}'{nearest(path[-1], allowed)}"
     words = next((node["description"] for node in reversed(_nodes(section, path)[1:])
                   if "description" in node), "")  # fmt: skip
     if error["type"] == "missing":

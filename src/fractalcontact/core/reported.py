@@ -132,8 +132,8 @@ def states_at(
 ) -> _States:
     """States at a direction, the nearest offset (mm) and a resolution, of those a stage is over."""
     labels = dict.fromkeys(_DIRECTIONS, direction) | {"resolution": resolution}
-    known = {dim: at for dim, at in labels.items() if at is not None and dim in stage.dims}
-    stage = stage.sel(known) if known else stage
+    place = {dim: label for dim, label in labels.items() if label is not None and dim in stage.dims}
+    stage = stage.sel(place) if place else stage
     if offset is None or "offset" not in stage.dims:
         return stage
     return stage.sel(offset=offset, method="nearest")

@@ -216,10 +216,10 @@ def _misfits(rho, areas, side, terms, dimensions):
         if possible:
             total = 0.0
             for k in range(rho.size):
-                found = -1.0
+                miss = -1.0
                 for i in range(terms):
-                    found += columns[i, k] * a[i]
-                total += found**2
+                    miss += columns[i, k] * a[i]
+                total += miss**2
             misfits[d] = np.sqrt(total / rho.size)
     return misfits
 

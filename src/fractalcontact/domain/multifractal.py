@@ -70,8 +70,8 @@ def gliding_moments(
         for k, size in enumerate(sizes.astype(int)):
             lowest = [np.arange(0, n - size + 1, max(1, size // PLACES)) for n in mass.shape]
             parts = [
-                (2 * at + size) * BLOCKS // (2 * n)
-                for at, n in zip(lowest, mass.shape, strict=True)
+                (2 * start + size) * BLOCKS // (2 * n)
+                for start, n in zip(lowest, mass.shape, strict=True)
             ]
             _glide(mass.shape[1], filled, size, *lowest, *parts, q, moments[k])
             places[k] = np.outer(*(np.bincount(part, minlength=BLOCKS) for part in parts)).ravel()

@@ -13,8 +13,8 @@ from ..registration.surface_motion import Motion
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
-from .measured import NOTE, Measured
 from .triangles import interpolate_mesh, interpolate_points, places_across
+from .ungridded import NOTE, UngriddedScan
 
 _CUT_APART = (
     "save each face in a file of its own, two faces as NAME.lower and NAME.upper, as seen from "
@@ -67,7 +67,7 @@ class Cloud:
         return self.density.spacing
 
 
-def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
+def prepare_clouds(scans: Sequence[UngriddedScan]) -> list[Cloud]:
     """Clouds of one or two faces, ready for one grid.
 
     Points on a regular grid of x and y are one height to a node and stay as they are. Others are
@@ -141,7 +141,7 @@ def _refuse_several_faces(mesh: Mesh, heights: np.ndarray, lattice: pts.Lattice,
         )
 
 
-def _merge(scan: Measured) -> Cloud:
+def _merge(scan: UngriddedScan) -> Cloud:
     """Count and join repeats, and look for a lattice."""
     points, repeats = pts.merge_points(scan.values)
     n_finite = int(np.isfinite(points[:, 2]).sum())

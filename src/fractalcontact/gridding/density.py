@@ -118,7 +118,7 @@ def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -
         return float(np.median(held[measured.ravel()]))
     cells, counts = np.unique(_cells_of(points, lattice), return_counts=True)
     counts = np.sort(counts[measured.ravel()[cells]])
-    empty = n_measured - len(counts)  # most cells may be, so that they are not listed
+    empty = n_measured - len(counts)  # most cells may be empty, so `counts` does not list those
     middle = [(n_measured - 1) // 2 - empty, n_measured // 2 - empty]
     return float(np.mean([counts[i] if i >= 0 else 0 for i in middle]))
 

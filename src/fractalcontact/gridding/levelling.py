@@ -32,7 +32,7 @@ def common_plane(
     parts = [cloud[_within_fences(cloud)] for cloud in clouds]
     centres = [part.mean(axis=0) for part in parts]
     scatter = sum(np.cov((p - c).T) for p, c in zip(parts, centres, strict=True))
-    (thickness, width, _), axes = np.linalg.eigh(scatter)  # squares
+    (thickness, width, _), axes = np.linalg.eigh(scatter)  # eigenvalues are squares of lengths
     normal = axes[:, 0] if thickness < _THICKEST**2 * width else np.array([0.0, 0.0, 1.0])
     if upward is not None and tilt_degrees(normal) > UPRIGHT:
         down = normal @ np.asarray(upward) < 0

@@ -82,7 +82,7 @@ def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -
         may_be = np.flatnonzero((above.sum(axis=1) >= _FEWEST) & (fellows >= _FEWEST))
         around = points[neighbours[may_be], :2] - block[may_be, None, :2]
         angles = np.where(above[may_be], np.arctan2(around[..., 1], around[..., 0]), np.nan)
-        angles = np.sort(angles, axis=1)  # NaN last
+        angles = np.sort(angles, axis=1)  # missing angles come last
         across_the_back = angles[:, 0] + 2 * np.pi - np.nanmax(angles, axis=1, initial=-np.pi)
         gap = np.fmax(np.nanmax(np.diff(angles), axis=1, initial=0), across_the_back)
         hidden[start + may_be] = gap < _WIDEST_GAP

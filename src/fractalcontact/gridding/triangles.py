@@ -111,7 +111,7 @@ def places_across(lattice: Lattice, area_per_point: float) -> int:
 def on_one_line(xy: np.ndarray) -> bool:
     """True if points (n, 2) span no area."""
     xy = xy - xy.mean(axis=0)
-    narrow, wide = np.linalg.eigvalsh(xy.T @ xy)  # squares: compare roots
+    narrow, wide = np.linalg.eigvalsh(xy.T @ xy)  # eigenvalues are squares of lengths
     return not (wide > 0 and math.sqrt(max(narrow, 0.0)) > _LINE * math.sqrt(wide))
 
 

@@ -13,6 +13,7 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.limits import PRESSURE_ROUNDING
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
@@ -147,8 +148,9 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     settlement = bulk_settlement(forces, space.modulus, *sides)
     pressure = forces / loading.area
     closure = data["closure"] - xr.DataArray(settlement, dims="normal_force")
-    seat = closure[0].where(np.isclose(pressure, seating, rtol=ROUNDING, atol=0)).sum(min_count=1)
-    beyond = pressure >= seating * (1 - ROUNDING)
+    at_seat = np.isclose(pressure, seating, rtol=PRESSURE_ROUNDING, atol=0)
+    seat = closure[0].where(at_seat).sum(min_count=1)
+    beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
     stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
     reason = stiffness_reason(stiffness, data["stiffness"], bool(np.ptp(composite) == 0))

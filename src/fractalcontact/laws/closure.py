@@ -6,13 +6,13 @@ import xarray as xr
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
-from ..states.separation import add_seated_closure, add_separation
-from ..states.settlement import bulk_settlement, interface_closure
+from ..states.settlement import bulk_settlement, interface_closure, interface_stiffness
 from ..states.states import OFFSETS, STATE_VARIABLES, WITH_SCATTER, error_attrs
 from .closure_laws import add_closure_laws, at_twice
 from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
+from .separation import add_seated_closure, add_separation
 
 #: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
@@ -156,9 +156,8 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     ):
         attrs = cf_attrs("1", words.format(fewest))
         added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
-    stiffness = interface_stiffness(
-        curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
-    ).where(~flush)
+    bulk = curves["nominal_pressure"] / curves["bulk_settlement"]
+    stiffness = interface_stiffness(1 / (curves["stiffness"] / area), 1 / bulk).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
@@ -238,16 +237,6 @@ def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
     error = abs(closure - coarser.reindex(resolution=closure["resolution"].values))
     error.attrs = cf_attrs("mm", "closure w, change from twice the spacing to this one")
     return error.transpose(*closure.dims)
-
-
-def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray:
-    """Stiffness of the interface alone, MPa/mm: 1/k = 1/k_int + 1/k_bulk, compliances add up.
-
-    ``total`` is d sigma_0/dw, ``bulk`` sigma_0/w_b. NaN where the whole is no more compliant than
-    the bulk: contact is so full that it answers like a punch.
-    """
-    compliance = 1 / total - 1 / bulk
-    return 1 / compliance.where(compliance > 0)
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:

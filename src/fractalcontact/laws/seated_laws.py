@@ -11,11 +11,15 @@ import numpy as np
 import xarray as xr
 
 from ..core.labels import cf_attrs
-from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
+from ..core.limits import (
+    LARGEST_MISFIT,
+    PRESSURE_ROUNDING,
+    REFERENCE_PRESSURES,
+    SEATED_SPAN,
+)
 from ..core.per_curve import per_curve
 from ..core.text import percent
 from ..core.verdicts import TOO_WIDE
-from ..states.separation import ROUNDING
 from .closure_laws import (
     MIN_CLOSURE_POINTS,
     Hyperbola,
@@ -114,7 +118,7 @@ def _undetermined(hyperbola: Hyperbola, points: int, seat: float) -> str:
 
 def within_span(pressure: np.ndarray, seat: float) -> np.ndarray:
     """Loads (n,) bool up to :data:`core.limits.SEATED_SPAN` times the seating pressure, MPa."""
-    return pressure <= SEATED_SPAN * seat * (1 + ROUNDING)
+    return pressure <= SEATED_SPAN * seat * (1 + PRESSURE_ROUNDING)
 
 
 def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarray:

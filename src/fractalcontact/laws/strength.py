@@ -212,7 +212,7 @@ _SOLVED = (
 )
 #: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
-FULL = "half of the window touches, so that the faces no longer ride on asperities"
+HALF_TOUCHES = "half of the window touches, so that the faces no longer ride on asperities"
 
 #: Quantities of one direction: unit, long name, dimensions.
 FIELDS = _QUANTITIES | {
@@ -296,9 +296,9 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     cut = (truncated & at_peak).any(axis=0)
     return {
         "shear_strength_valid": ~truncated & ~full,
-        "shear_strength_reason": np.where(full, FULL, np.where(truncated, TRUNCATED, "")),
+        "shear_strength_reason": np.where(full, HALF_TOUCHES, np.where(truncated, TRUNCATED, "")),
         "peak_strength_valid": ~cut & ~full,
-        "peak_strength_reason": np.where(full, FULL, np.where(cut, TRUNCATED, "")),
+        "peak_strength_reason": np.where(full, HALF_TOUCHES, np.where(cut, TRUNCATED, "")),
         "peak_over_barton": peaks / barton,
     }
 

@@ -45,7 +45,9 @@ def read_test(test: MeasuredTest) -> TestReadings:
     joint would open under pressure or close while it slides, or no closure is left beside the rock.
     """
     columns = read_columns(test.file, test.columns)
-    (of_x, x), (of_y, y) = ((name, _in_program_units(name, one)) for name, one in columns.items())
+    (of_x, x), (of_y, y) = (
+        (name, _in_program_units(name, column)) for name, column in columns.items()
+    )
     for name, column in columns.items():
         if name in _POSITIVE:
             _require_positive(name, column)

@@ -167,8 +167,8 @@ def published() -> tuple[Row, ...]:
     stated = yaml.safe_load(_FILE.read_text(encoding="utf-8"))
     renamed = {"from": "source", "with": "beside"}
     return tuple(
-        Row(name, **{renamed.get(key, key): value for key, value in one.items()})
-        for name, one in stated.items()
+        Row(name, **{renamed.get(key, key): value for key, value in keys.items()})
+        for name, keys in stated.items()
     )
 
 
@@ -285,8 +285,8 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
     ends = _ends(row, subject, array, error)
     solved = named("closure/solved" if array.dims == ("normal_force",) else "", True)
     by_scan = decided_by_scan(named("closure/suspect_load_share" if row.by_scan else ""))
-    beside = {_BESIDE[str(dim)][0]: named(_beside(row, dim)) for dim in array.dims}
-    beside |= {name: named(f"{row.stage}/{name}") for name in row.beside}
+    related = {_BESIDE[str(dim)][0]: named(_beside(row, dim)) for dim in array.dims}
+    related |= {name: named(f"{row.stage}/{name}") for name in row.beside}
     for place in np.ndindex(array.shape):
         why, valid = str(reasons[place]), bool(np.nan_to_num(flags[place]))
         value, low, high = (end[place] for end in ends)
@@ -297,11 +297,11 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
         if row.range or row.dimension:
             determined &= bool(estimate.known and valid and estimate.determined)
         yield Number(
-            {name: _plain(values[place]) for name, values in beside.items()},
+            {name: _plain(values[place]) for name, values in related.items()},
             estimate,
             missing if solved[place] or not missing else _NOT_SOLVED,
             determined,
-            *(float(one[place]) for one in (error, population, hardest)),
+            *(float(numbers[place]) for numbers in (error, population, hardest)),
         )
 
 

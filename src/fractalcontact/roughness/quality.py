@@ -321,8 +321,8 @@ def _range_end(result, specimen) -> Estimate:
         for face, pitch in zip(words, result["point_pitch"], strict=True)
         if pitch > cell_side(specimen)
     ]
-    known = [end for end in ends if end.known]
-    return max(known, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)
+    determined = [end for end in ends if end.known]
+    return max(determined, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)
 
 
 def _compared_with_range(end: Estimate, resolutions, side):

@@ -85,7 +85,7 @@ def _ask(request: dict, path: Path):
             _server = _Server()
         try:
             return _server.read(request, path)
-        except BaseException:  # after Ctrl-C the rest of this answer would be read as the next
+        except BaseException:  # after Ctrl-C the rest of this answer would pass for the next one
             stop_reader()
             raise
 

@@ -84,5 +84,5 @@ def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
     for form in formats:
         if form.refusal:
             raise InputError(f"{path}: {form.refusal}")
-    known = " ".join(known_extensions())
-    raise InputError(f"{path}: unknown extension {extension!r}; known: {known}")
+    readable = " ".join(known_extensions())
+    raise InputError(f"{path}: unknown extension {extension!r}; known: {readable}")

@@ -10,9 +10,9 @@ from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
-from ..gridding.measured import NOTE, Measured, warnings_of
 from ..gridding.plausible import check_spacing
 from ..gridding.points import refuse_one_place, single_precision_note
+from ..gridding.ungridded import NOTE, UngriddedScan, warnings_of
 from .draft import draft_line
 from .options import (
     MATRIX_KEYS,
@@ -39,7 +39,7 @@ class ScanFile(NamedTuple):
     checksum: str
 
 
-def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> Measured:
+def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> UngriddedScan:
     """Content of a file converted to mm, with the keys of the sidecar."""
     path, raw = file.path, file.raw
     _refuse_idle_keys(raw, options, path)
@@ -94,7 +94,7 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(
+    return UngriddedScan(
         path, raw.layout, values, spacing, grid, provenance, raw.triangles, not is_aperture, size
     )
 

@@ -79,9 +79,9 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     An unknown key, and a value of the wrong kind, are refused.
     """
     document = {key: _as_list(value) for key, value in (options or {}).items()}
-    known = [key for key in ScanKeys.model_fields if key not in FACES]
-    if unknown := sorted(set(document) - set(known), key=str):
-        raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(known)}")
+    allowed = [key for key in ScanKeys.model_fields if key not in FACES]
+    if unknown := sorted(set(document) - set(allowed), key=str):
+        raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(allowed)}")
     stated = {key: value for key, value in document.items() if value is not None}
     validate(ScanKeys, stated, where)
     for key in ("unit", "unit_xy", "unit_z"):

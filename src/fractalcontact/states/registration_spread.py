@@ -7,17 +7,16 @@ import numpy as np
 import xarray as xr
 
 from ..core.intervals import t_quantile
+from ..core.limits import PRESSURE_ROUNDING
 from ..core.settings import Load
 from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .loading import JointLoading
-from .separation import ROUNDING
-from .subgrid import QUANTITIES as OF_STATES
-from .subgrid import composite_quantities
+from .subgrid import STATE_QUANTITIES, composite_quantities
 
 #: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
 #: first load at the seat or beyond, mm.
-QUANTITIES = (*OF_STATES, "seated_closure")
+SPREAD_QUANTITIES = (*STATE_QUANTITIES, "seated_closure")
 
 
 def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
@@ -53,7 +52,7 @@ def registration_values(
         for specimen in moved
     )
     values = composite_quantities(loading, composites, forces)
-    seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
+    seating = loading.settings.seating_pressure * loading.area * (1 - PRESSURE_ROUNDING)
     seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
     closure = values["closure"]
     return values | {"seated_closure": closure - closure[:, [seat]]}

@@ -4,33 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 
 from ..core.settings import Load
+from ..scan.other_readings import other_readings
 from .loading import JointLoading
 from .subgrid import composite_quantities
-
-#: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
-OTHER_FACES = "other_faces"
-#: Their dimension.
-READING = "reading"
-
-
-def other_readings(specimen: xr.Dataset) -> dict[str, xr.Dataset]:
-    """The specimen by each other reading of its scans; empty where it has none."""
-    if OTHER_FACES not in specimen:
-        return {}
-    return {
-        str(words): specimen.assign(
-            {
-                face: specimen[face].copy(data=heights.sel(face=face).values)
-                for face in ("lower", "upper")
-            }
-        )
-        for words, heights in zip(
-            specimen[READING].values, specimen[OTHER_FACES].transpose(READING, ...), strict=True
-        )
-    }
 
 
 def reading_values(

@@ -38,10 +38,11 @@ SCALARS = {
 SOLVER_ERROR = "solver error bound"
 
 #: Scalars that the tolerance of the solver leaves uncertain. The force is given.
-UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
-#: Their errors: name, unit, long name.
+WITH_SOLVER_ERROR = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
+#: Solver error bounds of these scalars: name, unit, long name.
 ERRORS = {
-    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
+    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}")
+    for name in WITH_SOLVER_ERROR
 }
 #: End of the long name of the error of a stiffness; where nodes yield, its scatter is added.
 WITH_SCATTER = f"{SOLVER_ERROR} and scatter"

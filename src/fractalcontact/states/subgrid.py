@@ -10,12 +10,14 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
 from .loading import JointLoading
-from .settlement import bulk_settlement, interface_closure
+from .settlement import bulk_settlement, interface_closure, interface_stiffness
 from .state_scalars import state_area
 from .sweep import load_steps
 
-#: Quantities of a state with a numerical error: unit, long name.
-QUANTITIES = {
+#: Quantities of a state with a numerical error: unit, long name. They have the names that the error
+#: budget publishes: `closure` and `stiffness` are of the interface alone, those of
+#: :data:`states.states.SCALARS` of interface and blocks together.
+STATE_QUANTITIES = {
     "closure": ("mm", "closure w_int from first touch"),
     "separation": ("mm", "separation of the mean planes, delta_r - w"),
     "area_corrected": ("mm2", "real contact area, corrected for its edge"),
@@ -99,9 +101,9 @@ def composite_quantities(
         states = load_steps(composite, space, forces, loading.solving, where)
         datum = float(composite.max()), float(composite.mean())
         of_loads = [state_quantities(state, *datum) for state in states]
-        rows.append([[of_state[name] for name in QUANTITIES] for of_state in of_loads])
-    table = np.reshape(rows, (len(rows), len(forces), len(QUANTITIES)))
-    return dict(zip(QUANTITIES, np.moveaxis(table, -1, 0), strict=True))
+        rows.append([[of_state[name] for name in STATE_QUANTITIES] for of_state in of_loads])
+    table = np.reshape(rows, (len(rows), len(forces), len(STATE_QUANTITIES)))
+    return dict(zip(STATE_QUANTITIES, np.moveaxis(table, -1, 0), strict=True))
 
 
 def state_quantities(
@@ -120,10 +122,10 @@ def state_quantities(
     area = float(np.prod(sides))
     settlement = float(bulk_settlement(state.force, space.modulus, *sides))
     stiffness = state.stiffness
-    compliance = (area / stiffness if stiffness else np.inf) - settlement / (state.force / area)
+    compliance = area / stiffness if stiffness else np.inf
     return {
         "closure": float(interface_closure(state.closure, settlement)),
         "separation": highest - reference - state.closure,
         "area_corrected": state_area(state),
-        "stiffness": 1 / compliance if compliance > 0 else np.nan,
+        "stiffness": float(interface_stiffness(compliance, settlement / (state.force / area))),
     }

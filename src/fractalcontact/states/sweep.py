@@ -180,8 +180,8 @@ def contact_states(
                 if of_offsets is not None and j == reference:
                     of_offsets[i] = gaps[-1]
                 solved[0, i, k, j] = True
-                for one, of_step in enumerate(slopes):
-                    dips[0, i, k, j, one] = dips_by_force(state.pressure, of_step)
+                for step, of_step in enumerate(slopes):
+                    dips[0, i, k, j, step] = dips_by_force(state.pressure, of_step)
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious, stiff=stiff).items():
                     scalars[name][0, i, k, j] = value

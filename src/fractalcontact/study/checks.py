@@ -17,7 +17,7 @@ from .configuration import resolve_embedded, resolve_roll_off, resolve_settings,
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
 from .keys import SidecarKeys, StudyKeys
-from .measured import require_files, test_files
+from .laboratory_tests import require_files, test_files
 from .scan_files import ScanFiles, refuse_outside_link
 from .scan_groups import list_grouped
 from .sidecar import is_contact_map, read_yaml

@@ -81,8 +81,8 @@ def clean_faces(
         for cells in (overlap, deep)
     )
     sparse = [_sparse(scan) for scan in scans]
-    each = zip(outlying, suspects.spikes, filled, sparse, strict=True)
-    suspicious = [np.logical_or.reduce([*cells, deep]) for cells in each]
+    marks = zip(outlying, suspects.spikes, filled, sparse, strict=True)
+    suspicious = [np.logical_or.reduce([*cells, deep]) for cells in marks]
     cells = {
         "outlier": np.logical_or.reduce(outlying),
         "spike": np.logical_or.reduce(suspects.spikes),
@@ -171,7 +171,7 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
     out of all but the extreme cells, and the range of those; NaN where too few cells are present.
     """
     windows = np.lib.stride_tricks.sliding_window_view(z, (_SIDE, _SIDE))
-    found = np.full((3, np.count_nonzero(present)), np.nan)
+    surroundings = np.full((3, np.count_nonzero(present)), np.nan)
     start = 0
     for strip in strips(z.shape, _SIDE**2):
         rows, columns = np.nonzero(present[strip])
@@ -188,13 +188,13 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
         own = z[rows, columns][judged]
         low, high = ordered[judged, _LARGEST_CLUSTER], ordered[judged, count - 1 - _LARGEST_CLUSTER]
         median = (ordered[judged, (count - 1) // 2] + ordered[judged, count // 2]) / 2
-        found[:, start + judged] = (
+        surroundings[:, start + judged] = (
             np.abs(own - median),
             np.maximum(own - high, low - own),
             high - low,
         )
         start += len(rows)
-    return found
+    return surroundings
 
 
 def fill_holes(
@@ -249,10 +249,10 @@ def _harmonic(heights: np.ndarray, unknown: np.ndarray, spacing) -> np.ndarray:
     entries = [(np.full(len(rows), 2 * sum(weights)), index[unknown], index[unknown])]
     for step_y, step_x in ((-1, 0), (1, 0), (0, -1), (0, 1)):
         weight = weights[0 if step_y else 1]
-        beside = (rows + step_y, columns + step_x)
-        known = ~unknown[beside]
-        right[known] += weight * (heights[beside][known] - level)
-        equation, neighbour = np.flatnonzero(~known), index[beside][~known]
+        neighbours = (rows + step_y, columns + step_x)
+        given = ~unknown[neighbours]
+        right[given] += weight * (heights[neighbours][given] - level)
+        equation, neighbour = np.flatnonzero(~given), index[neighbours][~given]
         entries.append((np.full(len(equation), -weight), equation, neighbour))
     values, equation, neighbour = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     matrix = sparse.csc_array((values, (equation, neighbour)), shape=(len(rows), len(rows)))

@@ -105,7 +105,7 @@ def _half_of_largest_square(specimen) -> _Wanted:
     part = 2 if slides(specimen.attrs["opposite"]) else 1
     cells = tuple(n // part for n in square)
     sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
-    return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
+    return _Wanted(cells, sides, middle, 0.0)  # the outer quarter of the square lies all around
 
 
 def _share(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
@@ -255,7 +255,7 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
     def cells(n: int) -> tuple[int, int]:
         return tuple(math.floor(n * pixel / s + _ROUNDING) for s in spacing)
 
-    fits = 1  # one cell is free, or there would be no plane
+    fits = 1  # at least one cell is free, as the face has a plane
     too_large = 1 + min(
         math.floor(n * s / pixel + _ROUNDING) for n, s in zip(valid.shape, spacing, strict=True)
     )

@@ -238,8 +238,9 @@ class _Path:
         if by_force:
             return solve_contact(*case, force=load, start=start, rtol=self.rtol, hardness=bound)
         reach = load - self.lowered
-        at = max(reach, 0.0)
-        contact = solve_contact(*case, closure=at, start=start, rtol=self.rtol, hardness=bound)
+        closure = max(reach, 0.0)
+        options = {"start": start, "rtol": self.rtol, "hardness": bound}
+        contact = solve_contact(*case, closure=closure, **options)
         return replace(contact, gap=contact.gap - reach, closure=reach) if reach < 0 else contact
 
 

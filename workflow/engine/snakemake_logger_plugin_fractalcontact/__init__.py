@@ -65,7 +65,9 @@ class LogHandler(LogHandlerBase):
         self.nothing = self.stopped = self.closed = False
         self.out, self.err = sys.stdout, sys.stderr
         for stream in (self.out, self.err):
-            stream.reconfigure(errors="backslashreplace")  # names of specimens are in any script
+            stream.reconfigure(
+                errors="backslashreplace"
+            )  # names of specimens may be in any alphabet
 
     def emit(self, record):
         """Take in one event of Snakemake."""
@@ -93,7 +95,7 @@ class LogHandler(LogHandlerBase):
     def _job_started(self, record):
         for number in record.jobs:
             self.running[number] = time.time()
-            self.failed.pop(number, None)  # on a cluster, begun again with more memory
+            self.failed.pop(number, None)  # a cluster starts the job again with more memory
 
     def _job_finished(self, record):
         if self.dry_run or record.job_id not in self.jobs:
@@ -162,7 +164,7 @@ class LogHandler(LogHandlerBase):
         elif _is_full(self.errors):
             self._say("error: .snakemake: no space left on its disk; make room there", self.err)
         elif self.errors:
-            self._say(f"error: {self.errors[0]}", self.err)  # later ones only say that it failed
+            self._say(f"error: {self.errors[0]}", self.err)  # later ones repeat that it failed
         elif self.nothing or (self.dry_run and not self.jobs):
             self._say("nothing to do: everything there is, is up to date")
         elif self.dry_run:

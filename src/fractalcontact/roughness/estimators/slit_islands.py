@@ -38,10 +38,10 @@ def slit_island_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
     edges = np.geomspace(1, min(heights.shape) / 2, _bins_to(min(heights.shape) / 2) + 1)
     bins = len(edges) - 1
     total, weight = np.zeros((2, bins, BLOCKS**2))
-    known = np.isfinite(heights)
-    levels = np.quantile(heights[known], LEVELS) if known.any() else []
+    measured = np.isfinite(heights)
+    levels = np.quantile(heights[measured], LEVELS) if measured.any() else []
     for level in levels:
-        area, perimeter, block = _islands(heights, known, level)
+        area, perimeter, block = _islands(heights, measured, level)
         root = np.sqrt(area)
         which = np.digitize(root, edges) - 1
         inside = which < bins
@@ -56,11 +56,11 @@ def _bins_to(longest: float) -> int:
     return max(int(np.log2(longest) * LENGTHS_PER_OCTAVE), 0)
 
 
-def _islands(heights, known, level):
+def _islands(heights, measured, level):
     """Area, perimeter (cells) and block of every island and lake that ends within the surface."""
-    above = known & (heights > level)
+    above = measured & (heights > level)
     islands, n_islands = ndimage.label(above)
-    lakes, n_lakes = ndimage.label(known & ~above)
+    lakes, n_lakes = ndimage.label(measured & ~above)
     lakes[lakes > 0] += n_islands
     # Number 0 marks missing cells and a rim round the grid.
     label = np.pad(islands + lakes, 1)

@@ -12,7 +12,7 @@ from ...core.errors import InputError
 from ...core.labels import printable
 from ...core.text import percent
 from ...core.units import length_factor
-from ...gridding.measured import NOTE
+from ...gridding.ungridded import NOTE
 from ..array_hints import require_array
 from ..format import Format
 from ..options import ScanOptions

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...gridding.measured import NOTE
+from ...gridding.ungridded import NOTE
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading

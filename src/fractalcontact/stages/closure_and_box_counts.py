@@ -17,18 +17,19 @@ from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.error_budget import error_budget
-from ..joint.overlap import load_warning, node_marks
+from ..error_budget.solve_plan import solve_plan
+from ..joint.openings import prefractal_openings
+from ..joint.overlap import node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..laws.scan_errors import load_warning
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
-from ..states.plan import solve_plan
 from ..states.registration_spread import registration_spread
 from ..states.scan_spread import scan_spread
-from ..states.separation import prefractal_openings
 from ..states.states import (
     DIP,
     chosen_offset,

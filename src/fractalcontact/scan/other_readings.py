@@ -15,11 +15,14 @@ from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.settings import SpecimenSettings
 from ..gridding.faces import grid_pair
-from ..gridding.measured import Measured
-from ..scan.options import ScanOptions
-from ..states.scan_spread import OTHER_FACES, READING
+from ..gridding.ungridded import UngriddedScan
 from ..surface.specimen import make_specimen, window_arguments
+from .options import ScanOptions
 
+#: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
+OTHER_FACES = "other_faces"
+#: Dimension of the readings.
+READING = "reading"
 #: Registrations that are compared, the one of a sidecar and none, and treatments of outliers.
 _UNREGISTERED, _REGISTERED = "none", "rigid"
 _TREATED = {"keep": "fill", "mask": "fill", "fill": "keep"}
@@ -31,11 +34,11 @@ MIN_CORRELATION = 0.9
 def with_other_readings(
     specimen: xr.Dataset,
     faces: tuple[xr.DataArray, xr.DataArray],
-    measured: tuple[Measured, Measured],
+    scans: tuple[UngriddedScan, UngriddedScan],
     options: ScanOptions,
     settings: SpecimenSettings,
 ) -> xr.Dataset:
-    """Specimen of two faces with :data:`states.scan_spread.OTHER_FACES`, where there are others.
+    """Specimen of two faces with :data:`OTHER_FACES`, where there are others.
 
     Parameters
     ----------
@@ -43,15 +46,15 @@ def with_other_readings(
         From :func:`surface.specimen.make_specimen`.
     faces : tuple of DataArray (y, x)
         That it was made from.
-    measured : tuple of Measured
-        Numbers of both files, from :func:`scan.read.measure_faces`.
+    scans : tuple of UngriddedScan
+        Numbers of both files, from :func:`scan.read.faces_in_mm`.
     options : ScanOptions
         Scan keys of the pair.
     settings : SpecimenSettings
     """
     on_grid: dict[str, np.ndarray] = {}
     # One at a time: of large scans each takes much memory.
-    for words, other in _readings(faces, measured, options, settings):
+    for words, other in _readings(faces, scans, options, settings):
         heights = _on_grid(specimen, other)
         if heights is not None:
             on_grid[words] = heights
@@ -64,13 +67,13 @@ def with_other_readings(
     return specimen.assign_coords(coords).assign({OTHER_FACES: (dims, every, attrs)})
 
 
-def _readings(faces, measured, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
+def _readings(faces, scans, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
     """Other readings by name, each as a specimen."""
     stated = options.registration or _REGISTERED
     otherwise = _REGISTERED if stated == _UNREGISTERED else _UNREGISTERED
     pairs = {stated: faces}
     if stated == _UNREGISTERED or _in_one_frame(faces):
-        lower, upper = measured
+        lower, upper = scans
         # As they were given, faces may share no area, or lie in the wrong order.
         with suppress(InputError):
             pairs[otherwise] = grid_pair(lower, upper, otherwise, options.mirror_upper)
@@ -109,3 +112,20 @@ def _on_grid(specimen, other) -> np.ndarray | None:
         face[np.ix_(rows, columns)] = other[name].values[there]
     y, x, ny, nx = (specimen.attrs[f"window_{of}"] for of in ("y0", "x0", "ny", "nx"))
     return heights if np.isfinite(heights[:, y : y + ny, x : x + nx]).all() else None
+
+
+def other_readings(specimen: xr.Dataset) -> dict[str, xr.Dataset]:
+    """The specimen by each other reading of its scans; empty where it has none."""
+    if OTHER_FACES not in specimen:
+        return {}
+    return {
+        str(words): specimen.assign(
+            {
+                face: specimen[face].copy(data=heights.sel(face=face).values)
+                for face in ("lower", "upper")
+            }
+        )
+        for words, heights in zip(
+            specimen[READING].values, specimen[OTHER_FACES].transpose(READING, ...), strict=True
+        )
+    }
