@@ -17,9 +17,8 @@ from ..core.limits import PRESSURE_ROUNDING
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.separation import ROUNDING
-from ..states.settlement import bulk_settlement
-from .closure import interface_stiffness, stiffness_reason
+from ..states.settlement import bulk_settlement, interface_stiffness
+from .closure import stiffness_reason
 from .seated_laws import at_reference_pressures, within_span
 
 _STATES = ("branch", "normal_force")
@@ -152,8 +151,10 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     seat = closure[0].where(at_seat).sum(min_count=1)
     beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
-    stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
-    reason = stiffness_reason(stiffness, data["stiffness"], bool(np.ptp(composite) == 0))
+    stiffness = interface_stiffness(1 / (data["stiffness"] / loading.area), 1 / bulk)
+    flush, on_loading = bool(np.ptp(composite) == 0), curve["interface_stiffness_reason"]
+    no_total = on_loading.reset_coords(drop=True)
+    reason = stiffness_reason(stiffness, data["stiffness"], flush, no_total)
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,

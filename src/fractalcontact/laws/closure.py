@@ -16,7 +16,6 @@ from .separation import add_seated_closure, add_separation
 
 #: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
-SINGLE_CELLS = f"too few contacts (under {RESOLVED_NODES}) carry the change of the force"
 FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
 
 
@@ -161,21 +160,25 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
-    reason = stiffness_reason(stiffness, curves["stiffness"], flush)
+    reason = stiffness_reason(stiffness, curves["stiffness"], flush, curves["stiffness_reason"])
     # Bare values are stored, because labels made by xr.where have no units.
     why = reason.where(curves["solved"], "").transpose(*order).values
     added["interface_stiffness_reason"] = (order, why, reason.attrs)
     curves.update(added)
+    del curves["stiffness_reason"]
 
 
 def stiffness_reason(
-    interface: xr.DataArray, total: xr.DataArray, flush: xr.DataArray | bool
+    interface: xr.DataArray,
+    total: xr.DataArray,
+    flush: xr.DataArray | bool,
+    no_total: xr.DataArray,
 ) -> xr.DataArray:
     """Reason why states have no stiffness of the interface; "" if they have one.
 
-    ``total`` is the stiffness of interface and blocks together.
+    ``total`` is the stiffness of interface and blocks together, ``no_total`` why that is missing.
     """
-    why = xr.where(total.isnull(), SINGLE_CELLS, FULL_CONTACT)
+    why = xr.where(total.isnull(), no_total, FULL_CONTACT)
     why = xr.where(interface.notnull(), "", xr.where(flush, FLUSH_FACES, why))
     attrs = cf_attrs("1", "why there is no tangent stiffness of the interface")
     return why.transpose(*interface.dims).assign_attrs(attrs)

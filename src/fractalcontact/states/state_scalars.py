@@ -12,6 +12,9 @@ from ..joint.overlap import suspect_load_share
 from .area_sampling import state_area_sampling
 from .states import SCALARS
 
+#: Reason of a stiffness that is not computed.
+NOT_WANTED = "computed at the finest resolution alone"
+
 
 def aperture(state: ContactState) -> np.ndarray:
     """Aperture (ny, nx) of a state, mm: its gap, exactly 0 in contact.
@@ -27,12 +30,13 @@ def numbers_of(
 ) -> dict[str, Any]:
     """Scalars of a contact state and their errors, stored without its fields.
 
-    :data:`states.states.SCALARS` and :data:`states.states.ERRORS`. Suspicious nodes are those of
-    :func:`joint.overlap.suspect_nodes`, none if left out. The stiffness takes more solves; it is
-    NaN where it is not wanted. Raises `NotConverged` as that does.
+    :data:`states.states.SCALARS`, :data:`states.states.ERRORS` and :data:`states.states.REASONS`.
+    Suspicious nodes are those of :func:`joint.overlap.suspect_nodes`, none if left out. The
+    stiffness takes more solves; it is NaN where it is not wanted. Raises `NotConverged` as that
+    does.
     """
     spacing, gap = state.space.spacing, aperture(state)
-    slope = state.slope if stiff else Slope(np.nan, np.nan)
+    slope = state.slope if stiff else Slope(np.nan, np.nan, reason=NOT_WANTED)
     of_domain: dict[str, Any] = {
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
@@ -46,6 +50,7 @@ def numbers_of(
         ),
         "stiffness": slope.value,
         "stiffness_scatter": slope.scatter,
+        "stiffness_reason": slope.reason,
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state, slope)

@@ -48,8 +48,11 @@ ERRORS = {
 WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
 ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
+#: Reasons of missing scalars: name, unit, long name.
+REASONS = {"stiffness_reason": ("1", "why there is no stiffness dF/dw")}
+
 #: Variables of a state without its contact domain.
-STATE_VARIABLES = [*SCALARS, *ERRORS, "solved"]
+STATE_VARIABLES = [*SCALARS, *ERRORS, *REASONS, "solved"]
 
 #: Numbers kept of every offset: name, unit, long name.
 OFFSETS = {

@@ -26,6 +26,7 @@ from .states import (
     ERRORS,
     OFFSET_GAP,
     OFFSETS,
+    REASONS,
     SCALARS,
     chosen_offset,
     concat_directions,
@@ -141,12 +142,13 @@ def contact_states(
     Returns
     -------
     xr.Dataset
-        The scalars of :data:`SCALARS` with their :data:`ERRORS`, and ``solved``, over (direction,
-        offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
-        resolution k, the contact domain ``in_contact_k`` over (direction, offset, normal_force,
-        y_k, x_k). NaN, and no contact, where a state was not solved. Where the states that are
-        looked at closely are among them, those of :data:`states.states.MAP_FIELDS`, over
-        (normal_force, y_k, x_k) or, of the offsets, (offset, y_k, x_k).
+        The scalars of :data:`SCALARS` with :data:`ERRORS` and :data:`REASONS`, and ``solved``, over
+        (direction, offset, resolution, load), those of :data:`OFFSETS` over (direction, offset)
+        and, for each resolution k, the contact domain ``in_contact_k`` over (direction, offset,
+        normal_force, y_k, x_k). NaN, and no contact, where a state was not solved. Where the
+        states that are looked at closely are among them, those of
+        :data:`states.states.MAP_FIELDS`, over (normal_force, y_k, x_k) or, of the offsets,
+        (offset, y_k, x_k).
 
     Raises
     ------
@@ -159,6 +161,7 @@ def contact_states(
     forces = loading.forces(settings.loads)
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
+    scalars |= {name: np.full(shape, "", object) for name in REASONS}
     solved = np.zeros(shape, bool)
     dips = np.full((*shape, len(STEPS), PARTS), np.nan, np.float32)
     fields: dict[str, tuple] = {}
@@ -248,7 +251,8 @@ def _labelled_states(
         "composite_spread": spread,
     }
     dims = ("direction", "offset", "resolution", "normal_force")
-    table: dict[str, tuple] = {name: (dims, *words) for name, words in (SCALARS | ERRORS).items()}
+    of_scalars = SCALARS | ERRORS | REASONS
+    table: dict[str, tuple] = {name: (dims, *words) for name, words in of_scalars.items()}
     table["solved"] = (dims, "1", "whether the state was needed, and solved")
     table |= {name: (dims[:2], *words) for name, words in OFFSETS.items()}
     return labelled_dataset(
