@@ -102,7 +102,7 @@ def _say_error(said):
 
 
 def _found_before(snakemake):
-    """Error of the attempt before this one, if this one would fail the same way."""
+    """Error of the previous attempt, if this attempt would fail the same way."""
     path = Path(snakemake.log[0])
     if snakemake.resources.get("attempt", 1) == 1 or not path.is_file():
         return ""
@@ -121,5 +121,5 @@ def _stop(number, frame):
 
 
 def _below(folder, paths):
-    """Files among these that the study itself makes."""
+    """Paths that lie below a folder."""
     return [path for path in map(Path, paths) if path.is_relative_to(folder)]

@@ -64,8 +64,9 @@ PRIORITY = {
     # Short jobs, for a core that has nothing else to do at the end.
     "area_slope": -1,
     "estimator_bias": -1,
-    # Figures are drawn after what the atlas of the study needs, else one core makes it alone at the end.
-    # Figures of joints take longer and begin first. In a campaign nobody wants to wait for the figures.
+    # Figures are drawn after the stages that the study's atlas needs; otherwise one core would make
+    # the atlas alone at the end. Figures of joints take longer and begin first. In a campaign
+    # figures are not delayed, so that nobody waits for them.
     "figures": 0 if IN_PARTS else -2,
     "figures_against_plane": 0 if IN_PARTS else -3,
     "explorer": -4,  # at the same time as the result page

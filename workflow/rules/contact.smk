@@ -225,7 +225,7 @@ rule strength:
         "../scripts/strength.py"
 
 
-# The same without strength, for a surface against a plane, which does not slide.
+# Stages of `strength` without strength, for a surface against a plane, which does not slide.
 use rule strength as size_laws_against_plane with:
     output:
         windows=f"{RESULTS}/windows/{{specimen}}.nc",

@@ -81,7 +81,7 @@ rule figures:
         "../scripts/figures.py"
 
 
-# The same for a surface against a plane, which does not slide: no strength, and fewer figures.
+# Figures of a surface against a plane, which does not slide: no strength, and fewer figures.
 use rule figures as figures_against_plane with:
     input:
         STAGE_PATTERNS,

@@ -18,7 +18,8 @@ if {"speed", "stability"} & set(config):
 
     SCENES = list(problems_of(config["speed"])) if "speed" in config else []
     KINDS = list(ALL_KINDS) if "stability" in config else []
-    #: Other codes that are measured. As a parameter, one that is installed later makes the jobs run again.
+    #: Other codes that are measured. They are a parameter, so that a code installed later makes the
+    #: jobs run again.
     PEERS = list(installed_peers())
 #: Kinds of hard problem that one job judges.
 KINDS_A_JOB = 14

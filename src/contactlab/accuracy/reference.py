@@ -30,7 +30,7 @@ RMS = 0.02  # mm
 REFERENCE_TOLERANCES = (1e-12, 1e-11, 1e-10)
 # Relative error of the fraction in contact, which only names a problem.
 FRACTION_MET = 0.02
-# Relative distance of closures at which the search for a count of nodes ends.
+# Relative difference of closures at which the search for a count of nodes ends.
 CLOSED = 1e-3
 #: Most interpenetrating nodes for direct elimination within seconds.
 ELIMINATED = 4500

@@ -51,7 +51,7 @@ def peak_memory(call: Callable[[], Any]) -> float:
 
 
 def _hand_back():
-    """Give freed memory back, where the C library can: a child would use it unnoticed."""
+    """Return freed memory to the system where the C library can; a child would use it unnoticed."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)

@@ -261,7 +261,7 @@ def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _of(samples: xr.Dataset, **chosen: Any) -> xr.Dataset:
-    """Surfaces of a class."""
+    """Surfaces of a class, chosen by the values of ``of_NAME``."""
     keep = np.ones(samples.sizes["surface"], bool)
     for name, value in chosen.items():
         keep &= samples[f"of_{name}"].values == value

@@ -44,7 +44,7 @@ class SizeTask(NamedTuple):
     first: int
     """Number of the first surface."""
     surfaces: int
-    """How many."""
+    """Number of surfaces."""
     whole: int | None = None
     """Nodes per side of the surface that windows of ``size`` are cut from; None without windows."""
     construction: str = ""

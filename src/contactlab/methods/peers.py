@@ -88,7 +88,7 @@ class PublicCode:
         raise NotImplementedError
 
     def count(self, on: bool) -> None:
-        """Begin to count applications of the operator, from zero, or end it, as it takes time."""
+        """Begin or end to count applications of the operator; counting takes time."""
 
     @property
     def applications(self) -> int | None:

@@ -75,7 +75,7 @@ class Described:
 class Face:
     """One file as it would be read.
 
-    ``options`` are its scan keys, ``measured`` is None if it is refused, ``notes`` stand beside its
+    ``options`` are its scan keys, ``scan`` is None if it is refused, ``notes`` stand beside its
     picture. ``among`` are numbers among the heights that may mark missing cells, where the draft
     names none.
     """

@@ -103,7 +103,7 @@ def _rows(section: Any, above: str = "") -> Iterator[tuple[str, str, str]]:
 
 
 def _unsaid(field: Any, node: dict[str, Any]) -> str:
-    """What holds for a key that is left out, by its default."""
+    """Value that holds for a key that is left out, by its default."""
     if field.is_required():
         return "required"
     value = node.get("default", field.default)

@@ -192,7 +192,7 @@ def lines_of(results: Path | str) -> list[str]:
 
 
 def record_of(results: Path | str, file: Path | str) -> Path:
-    """File with the checksums of a result and of those that differ from it in their ending."""
+    """File with the checksums of a result and of those that differ only in their ending."""
     results, file = Path(results), Path(file)
     name = file.relative_to(results)
     return results / FOLDER / name.with_name(name.stem + ENDING)

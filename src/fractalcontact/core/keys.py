@@ -249,7 +249,7 @@ def _mapping_words(form: Mapping) -> str:
 
 
 class _WithTexts(_Schema):
-    """The same with the texts below the fields of the classes."""
+    """JSON schema of :class:`_Schema` with the texts below the fields of the classes."""
 
     def model_schema(self, schema: Any) -> Any:
         document = super().model_schema(schema)

@@ -211,7 +211,7 @@ def with_error(
 
 
 def loads_of(some: int, total: int) -> str:
-    """Loads at which something is so, in words: "no load", "3 of 7 loads", "every load"."""
+    """Number of loads that meet a condition, in words: "no load", "3 of 7 loads", "every load"."""
     if some in (0, total):
         return "every load" if some else "no load"
     return f"{some} of {total} loads"

@@ -46,8 +46,8 @@ MIN_WITH_OUTLINE = 1.0
 #: Least ratio by which a further term of the outline must lower the misfit.
 TERM_GAIN = 1.5
 
-#: Cells count as whole (c = 0) where their law fits better by this ratio than that of centres, and
-#: to this misfit: without an outline (log-periodic sets wave by 2 %), and with an outline.
+#: Least ratio of misfits by which the law of whole cells (c = 0) must fit better than that of
+#: centres, and its largest misfit without an outline (log-periodic sets wave by 2 %) and with one.
 WHOLE_GAIN = 1.6
 WHOLE_MISFIT = 0.026
 WHOLE_MISFIT_OUTLINE = 0.0015
@@ -57,7 +57,7 @@ WHOLE_MISFIT_OUTLINE = 0.0015
 SMALLEST_SEPARATING = 3
 SMALLEST = 4
 
-#: What a node can stand for: all of its cell, or its centre.
+#: Area that a node can stand for: all of its cell, or its centre.
 _WHOLE, _CENTRE = 0, 1
 
 
@@ -65,15 +65,15 @@ class LawTerms(NamedTuple):
     """Terms of a count law, all lengths in one unit, for its curve."""
 
     amplitude: float
-    """A, boxes as large as the extent."""
+    """Factor A: boxes as large as the extent."""
     outline: float
-    """b_1"""
+    """Factor b_1 of the outline."""
     outline_square: float
-    """b_2"""
+    """Factor b_2 of the square of the outline's term."""
     node_width: float
-    """c"""
+    """Width c that a node stands for."""
     extent: float
-    """L"""
+    """Extent L of the domain."""
 
 
 NO_TERMS = LawTerms(*(np.nan,) * 5)

@@ -38,7 +38,7 @@ class CountedDomain:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Values of :data:`QUANTITIES` by name."""
+        """Values of :data:`DOMAIN_QUANTITIES` by name."""
         slope = np.nan
         if self.nodes.any() and self.counts_pairs:
             pairs, lags = self.pairs

@@ -134,7 +134,7 @@ def null_models(
     Returns
     -------
     xr.Dataset
-        Over ``normal_force`` (without coordinate): ``_cut`` of each of :data:`QUANTITIES`;
+        Over ``normal_force`` (without coordinate): ``_cut`` of each of :data:`DOMAIN_QUANTITIES`;
         ``_random``, ``_random_low`` and ``_random_high`` of Delta_sigma and of the clusters;
         ``_cut_difference`` with its ends of both dimensions; the counts of the null models over the
         box sides ``null_side`` and ``null_mean_side`` (mm). The ``local_slope`` of

@@ -39,8 +39,8 @@ from .twins import twin_loadings
 #: Sub-windows along a side of the window, and how many of each size are solved.
 PARTS, MAX_WINDOWS = (1, 2, 4), 4
 
-#: Of every realisation under every load, named as in the stages of the named specimen: unit, long
-#: name.
+#: Numbers of every realisation under every load, named as in the stages of the specimen that the
+#: ensemble stands for: unit, long name.
 STATES = {
     "nodes": ("1", "nodes in contact"),
     "interface_closure": ("mm", "interface closure w_int = w - w_b, from first touch"),
@@ -56,7 +56,7 @@ STATES = {
     ),
     "difference": ("1", "Delta_sigma from area less that from box counting"),
 }
-#: Of every realisation under the reference load: unit, long name.
+#: Numbers of every realisation under the reference load: unit, long name.
 ISOTROPY = {
     "interval_difference": (
         "1",
@@ -185,7 +185,7 @@ def _members(
 
 
 def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:
-    """Specimen made from a recipe in the same way as the named one from its scan."""
+    """Specimen made from a recipe, cleaned and cut as the study's own specimen is."""
     spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
     lower = specimens["lower"].copy(data=embedded_surface(recipe)).assign_attrs(spacing)
     name = f"{specimens.attrs['name']}, realisation of seed {recipe['seed']}"

@@ -20,15 +20,15 @@ from ..laws.closure import interface_states
 from ..states.loading import JointLoading
 from ..states.sweep import contact_states
 
-#: Of every realisation over the offsets, under the reference load: unit, long name.
+#: Numbers of every realisation over the offsets, under the reference load: unit, long name.
 AT_OFFSETS = {
     "compliance_slid": ("mm/MPa", "compliance of the interface under the reference load"),
     "area_slid": ("1", "A_r / A_0 under the reference load, corrected for the perimeter"),
     "composite_spread": ("mm", "standard deviation sigma_z of the composite topography"),
 }
-#: Over the offsets and the choices of lags.
+#: Numbers over the offsets and the choices of lags.
 OVER_LAGS = ("lag_dimension",)
-#: Over the directions, and over the axes of two opposite directions, from the rigid slide.
+#: Numbers over the directions, and over the axes of two opposite directions, from the rigid slide.
 OF_DIRECTIONS, OF_AXES = ("plateau_slope", "plateau_change"), ("even_change", "odd_slope")
 
 #: Smallest ratio of successive offsets that are solved, as neighbours hardly differ.

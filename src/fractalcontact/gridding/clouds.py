@@ -25,7 +25,7 @@ _OVERHANG_OF_POINTS = (
     "of the points lies beneath others and is left out: an instrument above would not see it",
 )
 
-#: A larger share of points above another one is no repeat by chance.
+#: Largest fraction of points that lie above another point as repeats by chance.
 _MANY_STACKED = 0.05
 
 
@@ -91,7 +91,7 @@ def moved_cloud(cloud: Cloud, motions: Sequence[Motion]) -> Cloud:
 
 
 def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
-    """Heights (ny, nx) of a cloud on a grid, and the words of how they came there."""
+    """Heights (ny, nx) of a cloud on a grid, and the method of gridding in words."""
     where = str(cloud.path)
     area = cloud.area_per_point
     across = places_across(lattice, area)
@@ -117,7 +117,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
 
 
 def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
-    """Heights of a cloud on the lattice its points lie on, and how they came there."""
+    """Heights of a cloud on the lattice its points lie on, and the method in words."""
     mesh, lattice = cloud.mesh, cloud.lattice
     assert lattice is not None  # the caller has checked it
     heights = pts.place_on_lattice(cloud.points, lattice)

@@ -9,10 +9,10 @@ from ..core.strips import blocks, strips
 from .points import Lattice
 from .triangles import circumradius, doubled_area, on_one_line
 
-#: This many points stand for all where a median is wanted: it is then known to 1 %.
+#: Number of points that stand for all in a median, which is then known to 1 %.
 SAMPLE = 50_000
-#: Triangles are examined in this many patches of this many neighbouring points, or in the whole
-#: cloud if it has fewer points.
+#: Patches in which triangles are examined, and neighbouring points of a patch. A cloud with fewer
+#: points is examined as a whole.
 PATCHES = 20
 PATCH_POINTS = 3_000
 #: Nothing was measured where a circle without points has a radius above this multiple of the usual
@@ -24,8 +24,8 @@ HOLE_FACTOR = 3.0
 #: of scanners and 2.1 in a random cloud. Above this the points lie at random, along lines or in
 #: clumps: a grid at the nearest distance would have many cells a point, none of them measured.
 UNEVEN = 1.5
-#: A cell lies far from all points at this many times the side of the square that a point, or the
-#: cell, has to itself: on a regular lattice none is farther than 0.71 of it.
+#: Least distance of a far cell to all points, in sides of the square that a point, or the cell, has
+#: to itself: on a regular lattice no cell is farther than 0.71 of that side.
 FAR = 1.5
 
 

@@ -15,9 +15,9 @@ from .plausible import check_surface
 from .points import Lattice, covering_lattice
 from .ungridded import NOTE, UngriddedScan, warnings_of
 
-#: Two matrices are one grid when their spacings agree this well (relative).
+#: Largest relative difference of the spacings of two matrices on one grid.
 SAME_SPACING = 1e-6
-#: Two lattices are one grid when their nodes coincide within this fraction of a cell.
+#: Largest distance of the nodes of two lattices on one grid, as a fraction of a cell.
 SAME_NODES = 0.01
 
 

@@ -10,9 +10,10 @@ from ..core.limits import STEEP_TILT
 #: Points this many quartile distances beyond the quartiles do not decide where the plane lies
 #: (Tukey's far-out fence): spikes and unmarked missing heights.
 _FENCE = 3.0
-#: Above this the points alone do not show which side of the face is its upper one.
+#: Largest tilt, degrees, at which the points alone show which side of the face is its upper one.
 UPRIGHT = 85.0  # degrees
-#: What is thicker than this share of its width is no face and has no plane to be levelled by.
+#: Largest thickness of a face as a fraction of its width; a thicker body has no plane to be
+#: levelled by.
 _THICKEST = 0.5
 
 

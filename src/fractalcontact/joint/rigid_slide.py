@@ -29,7 +29,7 @@ class Slide(NamedTuple):
     spread: np.ndarray
     """Standard deviation of h, mm."""
     correlation: np.ndarray
-    """Of the two faces, each less its mean plane; NaN where one is a plane."""
+    """Correlation of the two faces, each less its mean plane; NaN where one is a plane."""
 
 
 def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:

@@ -66,9 +66,9 @@ def closure_curves(
     fit_range : (float, float), optional
         Smallest and largest force of the fits, N; all by default.
     openings : xr.DataArray, optional
-        From :func:`states.separation.prefractal_openings`.
+        From :func:`joint.openings.prefractal_openings`.
     seating_pressure : float, optional
-        As of :func:`states.separation.add_seated_closure`.
+        As of :func:`laws.separation.add_seated_closure`.
 
     Returns
     -------

@@ -78,7 +78,7 @@ def largest_of(test: MeasuredTest, readings: Curve) -> float:
 
 
 class _Calibrated:
-    """The constant that one of the tests calibrates, and closures with it."""
+    """Constant that one of the tests calibrates, and the closures with it."""
 
     def __init__(self, joint, tests, readings):
         self.joint, self.test = joint, next((test for test in tests if test.calibrate), None)

@@ -29,7 +29,7 @@ class Curve:
 
     @classmethod
     def of(cls, x: ArrayLike, y: ArrayLike, error: ArrayLike, *, log_x: bool = True) -> "Curve":
-        """Curve of those points that are known; an unknown error is none."""
+        """Curve of the points with a value; an unknown error counts as none."""
         x, y, error = (np.asarray(values, float) for values in np.broadcast_arrays(x, y, error))
         finite = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
         order = np.argsort(x[finite], kind="stable")

@@ -12,7 +12,7 @@ from ..scan.columns import Column, read_columns
 from .curve import MIN_READINGS, Curve, scatter
 from .one_way import require_one_way
 
-#: Columns that are lengths; transmissivities are cubes of one, all others are pressures.
+#: Columns that are lengths. Transmissivities are cubes of lengths, all other columns are pressures.
 _LENGTHS = ("displacement", "dilation", "hydraulic_aperture")
 #: Columns without values below 0.
 _POSITIVE = ("pressure", "shear_strength", "transmissivity", "hydraulic_aperture")
@@ -30,7 +30,7 @@ class TestReadings:
 
     @property
     def said(self) -> str:
-        """Both sentences."""
+        """Note and warning in one text."""
         return "; ".join(filter(None, (self.warning, self.note)))
 
 

@@ -84,7 +84,7 @@ def measured_stage(
 
 
 def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
-    """Readings, and the computed curve at its own points within them."""
+    """Readings of a test, and the computed curve at its own points within them."""
     inside = (computed.x >= readings.x[0]) & (computed.x <= readings.x[-1])
     within = computed.where(inside)
     if not within.x.size and computed.x.size:

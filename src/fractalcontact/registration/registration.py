@@ -13,7 +13,7 @@ from ..surface.cleaning import find_outliers
 from .face_match import ROTATIONS, averaged, best_match, for_comparison, match
 from .surface_motion import Motion, Surface, grid_nodes
 
-#: A match found further away must be better by this much than the nearest one.
+#: Least gain of a match farther away over the nearest one.
 _CLEARLY_BETTER = 0.05
 #: Cells along the longer side of the finest grid the motion is sought on; finer scans are averaged.
 _FINEST, _COARSEST = 512, 64
@@ -197,7 +197,7 @@ def _gauss_newton_step(lower, gap, motion, limit, mode) -> np.ndarray:
     return np.pad(solution[:-1], (0, len(PARAMETERS) + 1 - len(solution)))
 
 
-#: What a motion changes; of "translation" the first two.
+#: Parameters that a motion changes; of "translation" the first two.
 PARAMETERS = ("end_x", "end_y", "rotation", "slope_x", "slope_y")
 
 

@@ -140,12 +140,12 @@ class Row:
 
     @property
     def uncertain(self) -> bool:
-        """True if it has an interval, where that is known."""
+        """True if the quantity has an interval, where that is known."""
         return bool(self.budget or self.error or self.interval or self.range or self.dimension)
 
     @property
     def signed(self) -> bool:
-        """True if it may be zero or of either sign: its errors are no fractions of it."""
+        """True if the quantity may be zero or of either sign: its errors are no fractions of it."""
         return self.dimension or self.within[0] < 0
 
 
@@ -218,13 +218,13 @@ def read(row: Row, subject: Subject) -> list[Number]:
 
 
 def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:
-    """Number of a quantity under a load, by default the reference load, or its only number."""
+    """Number of a quantity under a load; the first of a quantity that is not over all loads."""
     number = subject.reported.reference if load is None else load
     return under_load(read(row, subject), number, subject.forces.size)
 
 
 def under_load(numbers: list[Number], load: int, loads: int) -> Number:
-    """Number under a load of those of a quantity; the first of what is not over all loads."""
+    """Number of a quantity under a load; the only number of one that is not over all loads."""
     return numbers[load if len(numbers) == loads and "pressure" in numbers[0].at else 0]
 
 

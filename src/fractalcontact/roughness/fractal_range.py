@@ -69,11 +69,11 @@ class FractalRange(NamedTuple):
     noise_rms: Estimate = NO_ESTIMATE
     """Standard deviation of independent errors of the nodes, mm."""
     noise_wavelength: Estimate = NO_ESTIMATE
-    """Where the self-affine line meets the noise floor, mm."""
+    """Wavelength at which the self-affine line meets the noise floor, mm."""
     filter_wavelength: Estimate = NO_ESTIMATE
-    """Where a filter halves the spectrum, mm."""
+    """Wavelength at which a filter halves the spectrum, mm."""
     roll_off_wavelength: Estimate = NO_ESTIMATE
-    """Above which the spectrum is flat, mm."""
+    """Wavelength above which the spectrum is flat, mm."""
     end: Estimate = NO_ESTIMATE
     """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
     misfit: float = np.nan

@@ -154,7 +154,9 @@ def _read_answer(stream):
 
 
 def _forget_server() -> None:
-    """A forked process must not talk on its parent's socket, nor wait for its parent's lock."""
+    """Drop the reader process in a fork, which must not talk on its parent's socket nor wait for
+    its lock.
+    """
     global _lock, _server
     _lock = threading.Lock()
     if _server is not None:

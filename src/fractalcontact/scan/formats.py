@@ -13,7 +13,7 @@ from .format import Format
 from .options import ScanOptions
 from .raw import RawScan
 
-#: By the name of the reader's module.
+#: Formats by the name of the reader's module.
 FORMATS: dict[str, Format] = {name: module.FORMAT for name, module in modules_of(readers).items()}
 
 

@@ -26,7 +26,7 @@ from .options import (
 from .raw import IncompleteSidecar, RawScan
 from .undeclared import refuse_or_warn
 
-#: Relief that is confirmed is written with four digits.
+#: Largest relative difference from a confirmed relief, which is written with four digits.
 SAME_RELIEF = 2e-3
 LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
@@ -100,7 +100,9 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:
-    """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
+    """Refuse numbers such as 1e300, which are damage or an undeclared mark and make arithmetic
+    overflow.
+    """
     finite = np.isfinite(values)
     low, high = values.min(where=finite, initial=np.inf), values.max(where=finite, initial=-np.inf)
     largest = max(low, high, key=abs) if finite.any() else 0.0
@@ -113,7 +115,7 @@ def _refuse_enormous(values: np.ndarray, path: Path) -> None:
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """A key that would change nothing was meant to change something."""
+    """Refuse a key that would change nothing: it was meant to change something."""
     idle = POINT_KEYS if raw.layout == "matrix" else MATRIX_KEYS
     for key in idle:
         is_by_cell = key == "columns" and options.layout == "points"

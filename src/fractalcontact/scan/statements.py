@@ -12,7 +12,7 @@ from typing import Any
 from ..core.labels import printable
 from ..core.units import length_unit
 
-#: Longer lines state nothing.
+#: Longest line that states anything.
 _MAX_LINE = 300
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _WORD = r"[^\W\d_]+"

@@ -13,11 +13,12 @@ from ..core.limits import SMALLEST_SIDE
 from .options import ScanOptions
 from .raw import RawScan
 
-#: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
+#: Most empty cells that numbered columns and rows may leave for each cell that they fill.
 MAX_EMPTY_PER_POINT = 20
-#: More blocks of points than this are scan lines, not clouds.
+#: Most blocks of points that are clouds; more blocks are scan lines.
 _MAX_CLOUDS = 4
-#: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
+#: Largest distance of coordinates from equal steps, as a fraction of a step: rounding in the
+#: export.
 EVEN = 0.1
 
 

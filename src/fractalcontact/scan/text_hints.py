@@ -16,15 +16,15 @@ from .text_style import add_style
 
 _MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
-#: Lines of words in front of the numbers that a table which describes itself may have.
+#: Most lines of words in front of the numbers of a table that describes itself.
 _MAX_ABOVE = 200
-#: Characters of a line that names columns; patterns take the square of them, at worst.
+#: Longest line, in characters, that names columns; patterns take the square of them, at worst.
 _MAX_HEADING = 2_000
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
-#: Numbers whose point may part thousands as well.
+#: Pattern of numbers whose point may part thousands as well.
 _MAYBE_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(\.\d{3})+")
-#: The width or height of a field, as programs write it in a line of its own.
+#: Pattern of the width or height of a field, as programs write it in a line of its own.
 _FIELD = re.compile(r"#?\s*[^:=]+:\s*([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\W\d]+)")
 _MAX_WORDS = 4
 _MAX_WORD = 40

@@ -16,7 +16,7 @@ _FORTRAN_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[-+]?\d)")
 _QUOTED = re.compile(r'"[^"]*"')
 ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
-#: A number or its beginning; a cut character of UTF-16 is the last sign.
+#: Pattern of a number or its beginning; a cut character of UTF-16 is the last sign.
 _BEGUN = re.compile(r"(?=.)[-+\d.,']*(?:[eEdD][-+]?\d*)?\ufffd?")
 _BLOCK = 2**24  # bytes
 MAX_ROWS = 60  # last rows whose numbers tell how the last one is written

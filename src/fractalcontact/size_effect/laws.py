@@ -35,7 +35,7 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
-#: Those without the part of the bulk; below 0 they mean nothing.
+#: Means without the part of the bulk; below 0 they mean nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 

@@ -35,8 +35,8 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     """Corrected area, compliance and mean gap against b at equal nominal pressure.
 
     ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`. Over (normal_force,
-    part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size with the interval over
-    them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
+    part): :data:`WINDOW_QUANTITIES`, means over the disjoint sub-windows of a size with the
+    interval over them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
     ``central_load``. Over (normal_force,): ``area_exponent``, ``compliance_exponent`` and
     ``gap_exponent``, by :func:`size_effect.size_exponents.add_size_exponents`.
 

@@ -1,4 +1,4 @@
-"""The rule that decides whether a specimen follows eq. 6: the only one, and nothing else.
+"""Rule that decides whether a specimen follows eq. 6.
 
 Eq. 6 is tested in two forms. The well-conditioned one compares the exponent of A_r/A_0 over b at
 equal nominal pressure with -(2 - Delta_sigma), which dilations of one contact set have. Its own

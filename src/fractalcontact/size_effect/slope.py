@@ -75,7 +75,7 @@ def _places(
 
 
 def _at_end(curves: np.ndarray, errors: np.ndarray, sign: int) -> np.ndarray:
-    """Curves of parts at their upper and of the whole at its lower error; -1 for the reverse.
+    """Curves of the parts at their upper error and of the whole at its lower; the reverse for -1.
 
     NaN where an error has no bound.
     """

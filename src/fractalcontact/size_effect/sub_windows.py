@@ -78,4 +78,4 @@ class SubWindows(ABC):
 
     @abstractmethod
     def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
-        """Store the numbers of a state that are wanted of it."""
+        """Store the numbers of a state that the caller needs."""

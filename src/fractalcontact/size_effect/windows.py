@@ -70,7 +70,8 @@ def window_states(
     parts: Sequence[int] = PARTS,
     most: int = MAX_WINDOWS,
 ) -> xr.Dataset:
-    """Contact states of sub-windows of several sizes, and how rough those of many more are.
+    """Contact states of sub-windows of several sizes, and sigma_z of sub-windows of many more
+    sizes.
 
     That of :func:`solved_windows`, and of :func:`size_effect.local_roughness.roughness_by_size`.
     """

@@ -201,7 +201,8 @@ def compared_pressures(pressures: np.ndarray) -> np.ndarray:
     return compared
 
 
-#: Of each quantity within a group: ending, words before its long name, whether in its unit.
+#: Statistics of each quantity within a group: ending, words before its long name, whether in its
+#: unit.
 _STATISTICS = {
     "_mean": "mean over specimens of ",
     "_mean_low": "lower end of the 95 % interval of the mean over specimens of ",

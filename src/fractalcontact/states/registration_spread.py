@@ -39,8 +39,8 @@ def registration_values(
 ) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness of each registration that is as good.
 
-    Arrays (motion, load) by :data:`QUANTITIES`, under the study's loads unless others are given;
-    empty along the motions where the specimen holds none. The first four are those of
+    Arrays (motion, load) by :data:`SPREAD_QUANTITIES`, under the study's loads unless others are
+    given; empty along the motions where the specimen holds none. The first four are those of
     :func:`states.subgrid.composite_quantities`. Raises `NotConverged`.
     """
     (cells,) = loading.cells
@@ -71,8 +71,8 @@ def registration_spread(
     Returns
     -------
     dict of str to (load,) ndarray, or None
-        By :data:`QUANTITIES`, in their units. None of a specimen that holds no further motions: one
-        face, faces given in one frame, or faces that do not match.
+        By :data:`SPREAD_QUANTITIES`, in their units. None of a specimen that holds no further
+        motions: one face, faces given in one frame, or faces that do not match.
 
     Raises
     ------

@@ -38,8 +38,8 @@ def scan_spread(
 
     Not a half-width of chance: readings are few, and none is more likely than another.
 
-    Distances (load,) by :data:`states.subgrid.QUANTITIES`, in their units; None without another
-    reading. Raises `NotConverged`.
+    Distances (load,) by :data:`states.subgrid.STATE_QUANTITIES`, in their units; None without
+    another reading. Raises `NotConverged`.
     """
     if not other_readings(loading.specimen):
         return None

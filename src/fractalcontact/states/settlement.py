@@ -1,6 +1,6 @@
-"""Closure of the interface: that of the window without the settlement of the blocks.
+"""Closure and stiffness of the interface: those of the window without the blocks.
 
-It lies below the laws of closure, so that a new law solves no state again.
+They lie below the laws of closure, so that a new law solves no state again.
 """
 
 from typing import Any

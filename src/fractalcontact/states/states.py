@@ -78,7 +78,9 @@ MAP_FIELDS = (MAP_PRESSURE, MAP_GAP, OFFSET_GAP)
 
 
 def error_attrs(attrs: Mapping[str, str], kind: str = SOLVER_ERROR) -> dict[str, str]:
-    """Attributes of the solver error bound, or another, of what has these attributes."""
+    """Attributes of an error, by default the solver error bound, of a variable with these
+    attributes.
+    """
     return cf_attrs(attrs["units"], f"{attrs['long_name']}, {kind}")
 
 

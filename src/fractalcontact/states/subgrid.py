@@ -90,7 +90,7 @@ def subgrid_states(
 def composite_quantities(
     loading: JointLoading, composites: Iterable[tuple[str, np.ndarray]], forces: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """The :data:`QUANTITIES` (composite, load) of a joint by other composite topographies of it.
+    """:data:`STATE_QUANTITIES` (composite, load) of a joint by other composites of it.
 
     Composites have a name, for errors. The separation is max h - mean h - w: that of the mean
     planes within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
@@ -109,7 +109,7 @@ def composite_quantities(
 def state_quantities(
     state: ContactState, highest: float, reference: float = 0.0
 ) -> dict[str, float]:
-    """The :data:`QUANTITIES` of a contact state.
+    """:data:`STATE_QUANTITIES` of a contact state.
 
     ``highest`` is the largest height of its composite topography, on its own grid, ``reference``
     that at zero offset on the scan's grid, from which dilatancy counts, mm. The separation is

@@ -10,7 +10,7 @@ from .figure_list import all_figures, figures_of
 MAX_WHOLE = 30
 #: Forms of an atlas: one file, or one file a specimen.
 WHOLE, PARTS = "whole", "parts"
-#: Words of a study for all figures and for none.
+#: Values of the key ``figures`` for all figures and for none.
 ALL, NONE = "all", "none"
 #: Key that asks for the figures over several specimens; every study of more than one has it.
 COMPARISON = "comparison"

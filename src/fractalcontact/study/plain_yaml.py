@@ -100,7 +100,7 @@ class _Loader(yaml.SafeLoader):
 
 
 class _AnchorLoader(_Loader):
-    """The same loader with anchors, aliases and merged mappings."""
+    """:class:`_Loader` with anchors, aliases and merged mappings."""
 
     allows_anchors = True
 

@@ -295,7 +295,7 @@ def _without_scan(sidecar: Path) -> InputError:
 
 
 def refuse_outside_link(path: Path, folder: Path) -> None:
-    """Refuse links out of a folder, through which untrusted folders would have other files read."""
+    """Refuse links out of a folder: an untrusted folder could otherwise have other files read."""
     try:
         target = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python

@@ -16,17 +16,16 @@ _TREATED = {
     "mask": "made missing",
     "fill": "filled, with lone spikes and deep overlaps",
 }
-#: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
-#: minority that can be set aside; this many must be present that some remain.
+#: Side, in cells, of the square with which a cell is compared, and fewest cells present in it: a
+#: cluster of 3 x 3 spikes is then a minority that can be set aside, and some cells remain.
 _SIDE = 7
 _LARGEST_CLUSTER = 9
 _FEWEST = 25
-#: A spike stands out by more than this many times the typical deviation of a cell from the median
-#: of its surroundings. Self-affine surfaces with H from 0.3 to 1 do so in fewer than one of 10^5
-#: cells.
+#: Least distance of a spike, in typical distances of a cell from the median of its surroundings.
+#: Self-affine surfaces with H from 0.3 to 1 have such cells in fewer than one of 10^5.
 _MANY_DEVIATIONS = 8.0
-#: ... and by more than this many times the relief of its own surroundings: rough rock has patches
-#: far rougher than the rest, with honest steps.
+#: Least distance of a spike in reliefs of its own surroundings: rough rock has patches far rougher
+#: than the rest, with honest steps.
 _MANY_RELIEFS = 3.0
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
 
@@ -167,8 +166,8 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
 
 
 def _surroundings(z: np.ndarray, present: np.ndarray):
-    """For each present cell: how far it is from the median of its surroundings, how far it stands
-    out of all but the extreme cells, and the range of those; NaN where too few cells are present.
+    """Distance of each present cell from the median of its surroundings, its distance beyond all
+    but their extreme cells, and the range of those; NaN where too few cells are present.
     """
     windows = np.lib.stride_tricks.sliding_window_view(z, (_SIDE, _SIDE))
     surroundings = np.full((3, np.count_nonzero(present)), np.nan)

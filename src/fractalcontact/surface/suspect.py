@@ -8,18 +8,18 @@ import xarray as xr
 
 from ..core.strips import blocks, strips
 
-#: A lone spike stands off the median of its eight neighbours by this many times what cells around
-#: it do, typically. On self-affine Gaussian surfaces with H from 0.2 to 0.8 none of 160 000 cells
-#: comes to 6.
+#: Least distance of a lone spike from the median of its eight neighbours, in typical distances of
+#: the cells around it. On self-affine Gaussian surfaces with H from 0.2 to 0.8 none of 160 000
+#: cells comes to 6.
 ALONE = 8.0
-#: ... or by this many times, where the other face says so: it overlaps there, or the gap stands off
-#: its surroundings as much.
+#: The same distance of a spike that the other face confirms: it overlaps there, or the gap stands
+#: off its surroundings as much.
 CONFIRMED = 4.0
-#: An overlap is deep where its depth, and how far the gap falls below the median of its eight
-#: neighbours, exceed this many times what is typical: no error of the registration or of the mean
-#: gap, which neighbours share, makes it.
+#: Least depth of a deep overlap, and least fall of the gap below the median of its eight
+#: neighbours, in typical values: an error of the registration or of the mean gap, which neighbours
+#: share, makes no such fall.
 DEEP = 3.0
-#: A cell with fewer neighbours, or fewer cells around it, is not judged.
+#: Fewest neighbours, and fewest cells around, of a cell that is judged.
 _MIN_NEIGHBOURS, _MIN_AROUND = 5, 12
 _HALF = 3  # cells to each side: the square around a cell is 7 x 7
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
@@ -71,7 +71,7 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
 
 
 def height_is_known(upper: xr.DataArray) -> bool:
-    """True if the mean gap was measured; else the upper face was set down until some cells touch.
+    """True if the mean gap was measured; else the upper face was lowered until some cells touch.
 
     The attribute ``registration`` of :func:`registration.pairs.register` tells, if there is one.
     """

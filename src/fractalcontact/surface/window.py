@@ -16,7 +16,7 @@ from ..core.limits import SMALLEST_SIDE
 from ..core.text import percent
 from ..core.window import spacing_of
 
-#: A side given in mm holds a whole number of cells within this fraction of one.
+#: Fraction of a cell within which a side given in mm holds a whole number of cells.
 _ROUNDING = 1e-6
 #: Percent of the holes that the proposed key fills.
 _MOST_HOLES = 99.9
@@ -47,7 +47,7 @@ class _Wanted(NamedTuple):
 
     cells: tuple[int, ...]
     sides: tuple[float, ...]
-    """mm."""
+    """Sides of the window, mm."""
     middle: tuple[float, ...]
     reach: float | Mapping[str, float]
 
@@ -280,7 +280,7 @@ def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[s
 
 
 def _no_place(specimen, shape) -> InputError:
-    """Obstacle of a window, and the window that would fit."""
+    """Error of a window without a place: the obstacle, and the window that would fit."""
     valid, spacing = specimen["valid"].values, spacing_of(specimen)
     rows, columns = np.nonzero(~valid)
     y, x = specimen.y.values, specimen.x.values

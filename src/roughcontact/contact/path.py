@@ -245,7 +245,7 @@ class _Path:
 
 
 def _branch_state(branch, contact, closure, held, yielded, hardness):
-    """State with the earlier permanent set and its own."""
+    """State of a branch with the permanent set held before and the set it makes itself."""
     at_limit = contact.pressure >= contact.hardness
     return BranchState(
         branch=branch,

@@ -11,7 +11,7 @@ from ..limits import RESOLVED_NODES
 #: Half the span of a secant: HALF_SPAN of the closure, or HALF_SPAN_OF_NODES times the closure from
 #: first touch of a node to its hardness, if that is more; at most MAX_HALF_SPAN of the closure.
 HALF_SPAN, HALF_SPAN_OF_NODES, MAX_HALF_SPAN = 0.02, 4.0, 0.25
-#: Tolerance of the two states at its ends.
+#: Tolerance of the two states at the ends of the secant.
 SECANT_RTOL = 1e-5
 
 #: Reasons why a branch has no slope.

@@ -59,7 +59,7 @@ class LogHandler(LogHandlerBase):
         """Begin without any job."""
         self.results = os.environ.get(RESULTS, "results")
         self.dry_run, self.begin = self.common_settings.dryrun, time.time()
-        #: By number of job: title, logs and reason; start of running jobs; titles of failed ones.
+        #: Jobs by number: title, logs and reason; start of running jobs; titles of failed ones.
         self.jobs, self.running, self.failed = {}, {}, {}
         self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
         self.nothing = self.stopped = self.closed = False

@@ -27,7 +27,7 @@ ORDER = 7
 
 #: Contact and its bearing-area cut: words, marker, line, factor of their places.
 _STYLES = (("elastic contact", "o", "-", 1.04), ("bearing-area cut", "s", "--", 0.96))
-#: Variables of both on the self-affine surfaces, and on each construction.
+#: Variables of the contact and of its cut on the self-affine surfaces, and on each construction.
 _SELF_AFFINE, _CONSTRUCTED = ("band_delta", "cut_delta"), ("geometry_delta", "geometry_cut")
 
 

@@ -117,7 +117,7 @@ def _draw_coverage(axes, bias):
 
 
 def _words(bias):
-    """Errors and coverage of the estimators where their bias is known."""
+    """Errors and coverage of the estimators where their bias is determined."""
     start = bias.attrs["from_hurst"]
     determined = bias.sel(estimator=bias["worst_bias"].notnull())
     names = [_name(name) for name in determined["estimator"].values]

@@ -16,7 +16,7 @@ def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curv
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     Profiles lack waves that are short across them, or have short waves along them folded back.
     Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long. Where the surface

@@ -115,7 +115,7 @@ def _square_about_line(piece):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H that the slope gives.
+    """Mean H of surfaces whose curve has this slope.
 
     Missing waves lie wholly about a window's plane, so all of their mean square is lost; of the
     surface's only a part lies there.

@@ -19,8 +19,7 @@ _MEAN_HURST = {
     BAND_LIMITED: (0.411, 0.520, 0.633, 0.747, 0.794, 0.835, 0.857),
     POINTS: (0.269, 0.456, 0.602, 0.731, 0.777, 0.827, 0.848),
 }
-#: The same over the short range.
-#: (smoothed: their standard errors are 0.01 to 0.02).
+#: Mean H by the slope over the short range, smoothed: the standard errors are 0.01 to 0.02.
 _MEAN_HURST_SHORT = {
     BAND_LIMITED: (0.526, 0.608, 0.672, 0.733, 0.762, 0.795, 0.815),
     POINTS: (0.370, 0.508, 0.617, 0.698, 0.733, 0.768, 0.790),
@@ -83,7 +82,7 @@ def _islands(heights, measured, level):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     Small islands have no lakes yet, and each coast alone is smoother than all of them.
     """

@@ -27,7 +27,8 @@ from ..variables import (
     table_names,
 )
 
-#: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
+#: Largest distance of coordinates from equal steps, as a fraction of a cell: float32 leaves as
+#: much.
 REGULAR = 0.01
 #: Numbers that netCDF leaves in cells that were not written.
 _UNWRITTEN = {
