@@ -109,7 +109,7 @@ def loaded(
 def _load(generator, space, closure, by_force=None):
     """A closure or, in half the cases, about its force: that of a punch as large as the window.
 
-    Any force has a state.
+    Every force has a state of contact.
     """
     by_force = generator.random() < 0.5 if by_force is None else by_force
     if not by_force:

@@ -332,7 +332,7 @@ def _labelled(rows: Sequence[Mapping[str, Any]]) -> xr.Dataset:
 def _about_problem(problem):
     """Attributes: the problem, its reference, and the seconds of one operator application.
 
-    The application is in single precision, as all of ours are but one or two.
+    The application is in single precision, as all but one or two of our solver's are.
     """
     reference, space = problem.single, problem.space
     field = reference.state.pressure.astype(np.float32)

@@ -26,8 +26,8 @@ def repeated(
 ) -> list[list[float]]:
     """Seconds of repeated calls, in turn, so that a disturbance of the machine affects all alike.
 
-    Each was made once before, in ``first`` seconds, which is one of its ``runs``. A call that took
-    more than ``longest`` seconds is not made again.
+    Each call was made once before, in ``first`` seconds, which counts as one of its ``runs``. A
+    call that took more than ``longest`` seconds is not made again.
     """
     seconds = [[took] for took in first]
     for _ in range(runs - 1):

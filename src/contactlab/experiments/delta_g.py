@@ -30,8 +30,8 @@ RMS = 1.0
 
 #: Least H of the surfaces that the verdicts rest on: those of natural joints are as smooth.
 FROM_HURST = 0.5
-#: Largest bias at these H of at least three estimators, and least fraction of the intervals that
-#: hold H.
+#: Largest bias of at least three estimators at the H of the verdicts, and least fraction of the
+#: intervals that hold H.
 TOLERATED, PROMISED = 0.03, 0.9
 
 

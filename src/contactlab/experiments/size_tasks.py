@@ -1,7 +1,7 @@
 """Jobs of the experiment on the size effect: the surfaces that each of them makes and solves.
 
-Light, because the workflow reads it: a job takes seeds of one arm, one Hurst exponent, one size and
-one short cut-off, as many as last for minutes.
+This module imports little, because the workflow reads it. A job takes seeds of one arm, one Hurst
+exponent, one size and one short cut-off, as many as last for minutes.
 """
 
 import math

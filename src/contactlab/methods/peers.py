@@ -175,7 +175,7 @@ def state_of(
 
     ``clearance`` is the opening at first touch, mm. An unknown closure is the mean over the contact
     that is no overlap. Force (N) and hardness (MPa) are the given ones. ``residual`` is measured
-    with our operator; ``iterations`` are not known: 0.
+    with our operator; ``iterations`` are not known and stated as 0.
     """
     cap = np.inf if hardness is None else hardness
     if closure is None:

@@ -41,9 +41,9 @@ def sha256(path: Path | str) -> str:
 class Digests:
     """SHA-256 of files, not computed again while a file's identity, size and times are the same.
 
-    No program can set the time of the last change of status. So moving, copying or unpacking an
-    older file over another is noticed, as git does it. The cache is the file that stores them;
-    damaged or missing, it is made anew.
+    No program can set the time of the last change of status, so that moving, copying or unpacking
+    an older file over another is noticed, as git notices it. The file ``cache`` stores the digests;
+    if it is damaged or missing, it is made anew.
     """
 
     def __init__(self, cache: Path | str = KNOWN):

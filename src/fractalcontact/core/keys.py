@@ -293,8 +293,8 @@ _RANKS = ("other", "value_error", "missing", "extra_forbidden")
 def _faults(section: type[Section], document: Mapping, errors: list, above: str) -> list[str]:
     """Sentences on the faults of a document, in the order of their keys.
 
-    A value that may have several forms gives an error for each of them; the one farthest inside
-    says most.
+    A value that may have several forms gives an error for each form; the error farthest inside says
+    most.
     """
     groups: dict[tuple, list] = {}
     for error in errors:

@@ -1,7 +1,7 @@
 """Contact states of a specimen that are published: direction, offset, grid and loads.
 
-The stage that solves them chooses them once and stores them with its closure curves. Figures,
-pages, statements and comparisons read them there.
+The stage that solves the states chooses the published ones once and stores their place with its
+closure curves. Figures, pages, statements and comparisons read it there.
 """
 
 from collections.abc import Mapping, Sequence

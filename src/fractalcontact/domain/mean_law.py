@@ -55,7 +55,7 @@ NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
 def mean_sizes(shape: tuple[int, ...]) -> np.ndarray:
     """Box sides in cells at which mean counts are taken: whole ones to `LARGEST_BOX` of an extent.
 
-    Those of a domain's extent are the first of those of its window.
+    The sizes for a domain's extent are the first of the sizes for its window.
     """
     return whole_sizes(LARGEST_BOX * max(shape))
 

@@ -1,7 +1,8 @@
 """Sliding of an ensemble: rigid dilatancy in all directions, and contact at all offsets.
 
-What the paper says of sliding it says of two joints. One joint shows it by chance: the highest
-points of a face decide, and there are few of them. Realisations show what is common to a kind.
+The paper states its results on sliding for two joints. A single joint may show them by chance,
+because the few highest points of a face decide. Realisations show what joints of a kind have in
+common.
 """
 
 from dataclasses import replace
@@ -44,7 +45,8 @@ SLIDING = (*AT_OFFSETS, *OVER_LAGS, *OF_DIRECTIONS, *OF_AXES)
 def spread_offsets(cells: np.ndarray) -> np.ndarray:
     """Offsets of a joint, in cells, ascending, at which its realisations are solved.
 
-    Each is :data:`OFFSET_RATIO` times the one before or more; flush faces are left out.
+    Each offset is :data:`OFFSET_RATIO` times the previous one or more; offsets at which the faces
+    are flush are left out.
     """
     chosen: list[int] = []
     for n in cells[cells > 0]:

@@ -1,4 +1,4 @@
-"""Density of points: their distance, the area of one, the largest circle that is no hole."""
+"""Density of points: their distance, the area of one point, the largest circle that is no hole."""
 
 from dataclasses import dataclass
 

@@ -157,8 +157,8 @@ def is_closed(triangles: np.ndarray) -> bool:
 def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
     """Shares of the area of a level mesh that face down, and against most of it.
 
-    The first goes by the sense in which triangles are wound. The second is the smaller of up and
-    down: overhangs; NaN if the triangles are not wound alike.
+    The first share follows the sense in which triangles are wound. The second is the smaller of the
+    shares up and down, which are overhangs; it is NaN if the triangles are not wound alike.
     """
     normal = triangle_normals(vertices, triangles)
     area = np.sqrt((normal**2).sum(axis=1))

@@ -1,7 +1,7 @@
 """Plausibility of gridded heights: what no rough surface has is refused or noted in a sentence.
 
 Refused are sizes and units that no scan has, constants and coordinates. Noted are profiles drawn
-out, planes, two tables in one file and many missing cells: they need not be wrong, and mostly are.
+out, planes, two tables in one file and many missing cells, which are mostly wrong but need not be.
 """
 
 import math
@@ -82,8 +82,8 @@ def check_surface(heights: np.ndarray, spacing: tuple[float, float], path: Path)
 def check_spacing(spacing: tuple[float, float], path: Path) -> None:
     """Refuse cells dx, dy in mm that no instrument measures.
 
-    Those are a side that is no length above zero, less than an atom, or more than `LARGEST_ASPECT`
-    times the other.
+    Refused is a side that is no length above zero, is less than an atom, or is more than
+    `LARGEST_ASPECT` times the other.
     """
     dx, dy = spacing
     cells = f"{path}: cells of {dx:.4g} x {dy:.4g} mm are not plausible"

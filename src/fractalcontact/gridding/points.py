@@ -47,8 +47,8 @@ class Repeats:
 def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
     """Points (m, 3) with one height at each x, y, the mean of all there, and counts of the repeats.
 
-    Points without finite x, y are dropped, and one that is there twice counts once. A height is NaN
-    where none was measured.
+    Points without finite x, y are dropped, and a point that is given twice counts once. A height is
+    NaN where none was measured.
     """
     placed = np.isfinite(points[:, :2]).all(axis=1)
     if not placed.all():

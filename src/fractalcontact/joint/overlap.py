@@ -1,7 +1,7 @@
 """Contact on suspicious cells of the scans: which nodes have them, and how much load they carry.
 
-What is suspicious is found in :mod:`surface.suspect` and :mod:`surface.cleaning`; a node of a
-composite topography is where either of its two cells is.
+Suspicious cells are found in :mod:`surface.suspect` and :mod:`surface.cleaning`; a node of a
+composite topography is suspicious where either of its two cells is.
 """
 
 import numpy as np
@@ -15,9 +15,9 @@ from .joint import slid_window
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
     """Suspicious nodes (ny, nx) of the composite topography of the window at an offset in cells.
 
-    Where the cell of either face is an outlier, a lone spike, filled, far from any point measured,
-    or in a deep overlap. At zero offset also where the faces overlap at all: a node is there made
-    of the two cells that were scanned at one place.
+    A node is suspicious where the cell of either face is an outlier, a lone spike, filled, far from
+    any point measured, or in a deep overlap. At zero offset it is also where the faces overlap at
+    all: the two cells of a node were then scanned at one place.
     """
     window = window_slices(specimen)
     if "suspect_lower" not in specimen:

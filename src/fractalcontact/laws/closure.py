@@ -232,8 +232,8 @@ def _add_compliance(curves: xr.Dataset) -> None:
 def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
     """Change of the closure by halving the spacing, mm; NaN where it was not solved twice.
 
-    It bounds what finer spacings would still change where closures approach their limit like s or
-    faster, as that of Hertz does; elsewhere it says how far the last halving went.
+    It bounds the change by finer spacings where closures approach their limit like s or faster, as
+    Hertz's does; elsewhere it says how far the last halving went.
     """
     fine = [k for k in closure["resolution"].values if 2 * k in closure["resolution"]]
     coarser = closure.sel(resolution=[2 * k for k in fine]).assign_coords(resolution=fine)

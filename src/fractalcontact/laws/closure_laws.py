@@ -1,7 +1,7 @@
 """Laws of closure curves: the hyperbola, the semi-logarithmic law, and which of them fits better.
 
-Both have two parameters and are fitted by least squares in the closure to the same states, so that
-their misfits can be compared.
+Both laws have two parameters and are fitted by least squares in the closure to the same states, so
+that their misfits can be compared.
 """
 
 from dataclasses import dataclass, replace

@@ -19,7 +19,8 @@ _ROUNDING = 1e-9
 class Curve:
     """Values ``y`` (n,) over ascending ``x`` (n,), with the half-widths of their intervals.
 
-    ``log_x`` says that it is interpolated over the logarithm of x: those over a pressure are.
+    ``log_x`` says that the curve is interpolated over the logarithm of x, as curves over a pressure
+    are.
     """
 
     x: np.ndarray

@@ -123,8 +123,8 @@ def register(
 def _upside_down(lower, upper, before: dict, mode: str, where: str) -> str:
     """Name faces of which the upper one lies below the lower one nearly everywhere.
 
-    In one coordinate frame they are in the wrong order. Scanned each in a frame of its own, their
-    heights may have no common zero either.
+    Faces given in one coordinate frame are in the wrong order. Heights of faces scanned in frames
+    of their own may also have no common zero.
     """
     gap = None if before["gap_mean"] is None else _common_gap(lower, upper)
     if gap is None:

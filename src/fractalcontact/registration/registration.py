@@ -1,6 +1,7 @@
 """Two faces of one joint brought together: the rigid motion that makes their gap most even.
 
-Even for most cells: spikes, and places where one face has lost rock, do not hold the others apart.
+Most cells alone count: spikes, and places where one face has lost rock, do not keep the other cells
+apart.
 """
 
 from dataclasses import replace

@@ -200,8 +200,8 @@ def row_of(name: str) -> Row:
 def read(row: Row, subject: Subject) -> list[Number]:
     """Numbers of a quantity of a specimen at its reported state.
 
-    There is one for each value of the dimensions that are left, in C order; a single one without
-    ``at`` where the specimen lacks the quantity.
+    There is a number for each value of the dimensions that are left, in C order; a single number
+    without ``at`` where the specimen lacks the quantity.
     """
     for need in row.needs:
         if why := NEEDS[need](subject):

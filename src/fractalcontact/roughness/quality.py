@@ -307,7 +307,7 @@ _RANGE = {
 def _range_end(result, specimen) -> Estimate:
     """Shortest wavelength of the fractal range, mm, over faces and axes, and its cause.
 
-    A distance of points larger than that of the nodes ends it too.
+    A distance of points larger than that of the nodes ends the range too.
     """
     seen = Estimate.read(result, "end")
     words = [face_words(specimen, face) for face in result["face"].values]

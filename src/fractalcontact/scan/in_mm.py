@@ -157,7 +157,8 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
 def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse ``unit`` where the file gives x and y a unit that heights do not share.
 
-    The owner most likely means the heights, and the key would change the spacing as well.
+    Its owner most likely means the unit of the heights, and the key would change the spacing as
+    well.
     """
     if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
         return

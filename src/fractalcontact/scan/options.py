@@ -122,8 +122,8 @@ def _refuse_one_mark_for_two(options: dict, where: str) -> None:
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
     """Files of the coordinates of the matrix at ``path``, by key; empty if its sidecar names none.
 
-    One without the other is refused, and a name that is not that of another file in the same
-    folder.
+    A file of x without one of y is refused, and so is a name that is not that of another file in
+    the same folder.
     """
     named = {key: str(options[key]) for key in COORDINATE_KEYS if options.get(key) is not None}
     if not named:

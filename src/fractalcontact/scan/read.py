@@ -56,7 +56,7 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     scan = grid_one(in_mm(_read(Path(path), given), given))
     if given.kind != APERTURE:
         return scan
-    # Cells outside that are known by their number are missing by now.
+    # Cells outside an outline that is stated by their number are missing already.
     is_masked = isinstance(given.outline, dict) and "mask" in given.outline
     return within_outline(scan, None if is_masked else given.outline, f"sidecar of {path}")
 

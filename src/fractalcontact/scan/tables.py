@@ -162,8 +162,8 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
 def _refuse_stacked(rows: int, breaks: Mapping[int, int], options: ScanOptions, where: str) -> None:
     """Refuse tables under one another, parted by lines without numbers.
 
-    Lines between rows in even steps part none. Other lines are accepted if the sidecar confirms the
-    size of the whole.
+    Lines between rows in even steps separate no tables. Other lines are accepted if the sidecar
+    confirms the size of the whole.
     """
     sizes = np.diff([0, *breaks, rows])
     if len(sizes) < 2 or options.confirmed is not None:

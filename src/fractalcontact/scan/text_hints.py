@@ -41,7 +41,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """Scan keys, and units for `RawScan`, of a table whose columns name x, y, z and units.
 
     The names stand in the line above the numbers, one for each column: ``x [mm], y [mm], z [um]``.
-    None for any other text, and where a comma or point might mean two things.
+    No columns of any other text, and none where a comma or point might mean two things.
     """
     lines = first_lines(path)
     number = _first_numbers(lines[: _MAX_ABOVE + 1])
@@ -219,7 +219,7 @@ def _numbers(rows: list[list[str]], width: int, form: ScanOptions) -> np.ndarray
 def _add_field(hints: Hints, above: list[str], shape: tuple[int, int]) -> None:
     """Suggest the spacing of a field as Gwyddion states it: channel, width, height, unit.
 
-    Its width is that of all cells, and its first row the top.
+    The width of a field is that of all cells, and the first row is the top.
     """
     if len(above) != 4 or not all(line.startswith("# ") and ":" in line for line in above):
         return

@@ -205,7 +205,8 @@ class _LoadedSize(SubWindows):
     def resolved(self) -> bool:
         """True if the sub-windows hold enough nodes under the last load for every test.
 
-        Each for its corrected area, and on the average at every resolution for sigma*.
+        Every sub-window needs enough for its corrected area; sigma* needs enough on the average at
+        every resolution.
         """
         nodes = self.nodes[:, :, self.solved - 1]
         fewest, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()

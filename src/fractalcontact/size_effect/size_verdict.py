@@ -100,9 +100,9 @@ def judge_own_form(
 
 
 def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
-    """Verdict and reason on eq. 6 under one load: the well-conditioned form's.
+    """Verdict and reason on eq. 6 under one load, those of the well-conditioned form.
 
-    Where that agrees, what its own form adds.
+    Where it agrees, the reason adds what eq. 6 says in its own form.
     """
     if area.verdict != AGREES:
         return area.verdict, area.reason

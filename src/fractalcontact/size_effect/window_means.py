@@ -19,7 +19,8 @@ def add_mean(
 ) -> None:
     """Mean over the sub-windows with its interval, into ``result``.
 
-    With solver error bounds of the values also an ``_error``: their mean bounds that of the mean.
+    With solver error bounds of the values there is an ``_error``, too: the mean of the bounds is a
+    bound of the mean.
     """
     dims = tuple(dim for dim in values.dims if dim != "window")
     units, long_name = values.attrs["units"], values.attrs["long_name"]

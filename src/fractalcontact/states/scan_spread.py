@@ -36,7 +36,7 @@ def scan_spread(
 ) -> dict[str, np.ndarray] | None:
     """Scan error: largest distance of the other readings from this one.
 
-    Not a half-width of chance: readings are few, and none is more likely than another.
+    It is no half-width of chance: readings are few, and none is more likely than another.
 
     Distances (load,) by :data:`states.subgrid.STATE_QUANTITIES`, in their units; None without
     another reading. Raises `NotConverged`.

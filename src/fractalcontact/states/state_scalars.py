@@ -19,8 +19,8 @@ NOT_WANTED = "computed at the finest resolution alone"
 def aperture(state: ContactState) -> np.ndarray:
     """Aperture (ny, nx) of a state, mm: its gap, exactly 0 in contact.
 
-    There a solved gap is within the tolerance of 0, and negative where a node at the hardness is
-    pressed in: the face has crushed by as much.
+    In contact a solved gap is within the tolerance of 0, and negative where a node at the hardness
+    is pressed in: the face has crushed by as much.
     """
     return np.where(state.in_contact, 0.0, np.maximum(state.gap, 0.0))
 
@@ -59,7 +59,7 @@ def numbers_of(
 def state_area(state: ContactState) -> float:
     """Real contact area of a state, corrected for the perimeter, mm2.
 
-    No less than what carries the force at the hardness, if there is one.
+    It is at least the area that carries the force at the hardness, if there is one.
     """
     corrected = float(corrected_area(state.in_contact, state.space.spacing))
     return max(corrected, state.force / float(np.max(state.hardness)))

@@ -280,9 +280,9 @@ def _exact_enough(
 ) -> ContactState:
     """The state, solved more tightly until its errors are within the requested accuracy.
 
-    They are those of the closure of the interface, which may be a small part of the whole closure,
-    and of Delta_sigma, estimated from the ambiguous nodes. Started from itself, a state is soon
-    better.
+    The errors are of the interface closure, which may be a small part of the whole closure, and of
+    Delta_sigma, estimated from the ambiguous nodes. A state that starts from itself improves within
+    few iterations.
     """
     if accuracy is None:
         return state

@@ -43,6 +43,6 @@ def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]
 def of_study_alone(names: Collection[str]) -> list[str]:
     """Figures of a study that read no stage of its specimens one by one.
 
-    The atlas of all specimens lacks those stages where it is in parts.
+    An atlas in parts lacks the stages of single specimens.
     """
     return [name for name in names if "specimens" not in all_figures()[name].needs]

@@ -198,7 +198,7 @@ def check_names(
     """Refuse embedded specimens whose results would be taken for others.
 
     Names must differ from each other and from those of the scans in more than upper and lower case,
-    as on many disks they would be one file, and must be possible for a scan too.
+    because on many disks they would be one file, and a scan must be able to have such a name.
     """
     taken: dict[str, tuple[str, str | None]] = {
         name.lower(): (name, f"a scan in {folder}") for name in scans

@@ -178,7 +178,8 @@ def _is_left_behind(name: str) -> bool:
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
     """Two files named like faces of one joint but in another form, and their right names.
 
-    Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
+    Examples are ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and
+    ``rock-top.x3p``.
     """
     spelled = {name.lower(): name for name in names}
     for name in names:

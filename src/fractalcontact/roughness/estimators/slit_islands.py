@@ -84,7 +84,7 @@ def _islands(heights, measured, level):
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
     """Mean H of surfaces whose curve has this slope.
 
-    Small islands have no lakes yet, and each coast alone is smoother than all of them.
+    Small islands have no lakes yet, and a single coast is smoother than all coasts together.
     """
     means = _MEAN_HURST[sampling], _MEAN_HURST_SHORT[sampling]
     return tabulated_mean(fit, *means, factor=FACTOR, second_differences=0.5)
