@@ -37,7 +37,9 @@ class Curve:
         return cls(x[finite][order], y[finite][order], np.nan_to_num(error[finite][order]), log_x)
 
     def at(self, x: np.ndarray | float) -> Estimate:
-        """Values between the points, NaN outside; the error is the larger of those beside."""
+        """Values between the points, NaN outside; the error is the larger error of the two
+        neighbouring points.
+        """
         x = np.asarray(x, float)
         if self.x.size < MIN_POINTS:
             nothing = np.full(x.shape, np.nan)
