@@ -67,9 +67,9 @@ def tables() -> dict[str, dict[str, str]]:
     }
 
 
-def written(document: str, made: dict[str, str]) -> str:
+def written(document: str, tables: dict[str, str]) -> str:
     """Text of a document with its tables between their marks."""
-    for name, table in made.items():
+    for name, table in tables.items():
         start, end = (mark.format(name=name) for mark in _MARKS)
         before, _, rest = document.partition(start)
         _, mark, after = rest.partition(end)

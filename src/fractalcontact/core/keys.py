@@ -212,10 +212,10 @@ def shortened(text: object) -> str:
     return text if len(text) <= _MAX_QUOTE else f"{text[:_MAX_QUOTE]}..."
 
 
-def nearest(word: object, known: Iterable) -> str:
+def nearest(word: object, words: Iterable) -> str:
     """Hint at the nearest known word, or at all words if none is near."""
-    near = difflib.get_close_matches(str(word), [str(k) for k in known], n=1)
-    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, known))}"
+    near = difflib.get_close_matches(str(word), [str(k) for k in words], n=1)
+    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, words))}"
 
 
 class _Schema(GenerateJsonSchema):

@@ -262,12 +262,12 @@ def total_of(row: Row, subject: Subject, kind: str = "total") -> xr.DataArray | 
 
 
 def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number]:
-    def over(found: xr.DataArray | None, otherwise: Any) -> np.ndarray:
+    def over(other: xr.DataArray | None, otherwise: Any) -> np.ndarray:
         """Values of an array over the places of the quantity."""
-        if found is None:
+        if other is None:
             return np.full(array.shape, otherwise)
-        size = [n if dim in found.dims else 1 for dim, n in array.sizes.items()]
-        ordered = found.transpose(*(dim for dim in array.dims if dim in found.dims))
+        size = [n if dim in other.dims else 1 for dim, n in array.sizes.items()]
+        ordered = other.transpose(*(dim for dim in array.dims if dim in other.dims))
         return np.broadcast_to(ordered.values.reshape(size), array.shape)
 
     def named(source: str, otherwise: Any = math.nan) -> np.ndarray:

@@ -276,11 +276,11 @@ def _profile_spectra(heights, spacing):
     return stacked(rows, _PROFILES, ("face", "axis"), (len(heights), len(AXES)))
 
 
-def _form_words(found: FractalRange) -> str:
+def _form_words(fractal_range: FractalRange) -> str:
     """Model of a spectrum in words; "" without one."""
-    if found.form is None:
+    if fractal_range.form is None:
         return ""
-    form = found.form
+    form = fractal_range.form
     parts = ["self-affine" if form.sampling == "ideal" else f"self-affine, {form.sampling}"]
     parts += ["roll-off"] * form.rolls_off + ["noise floor"] * form.noisy
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
