@@ -154,8 +154,8 @@ def _read_answer(stream):
 
 
 def _forget_server() -> None:
-    """Drop the reader process in a fork, which must not talk on its parent's socket nor wait for
-    its lock.
+    """Drop the reader process in a fork, which must not use its parent's socket or wait for its
+    lock.
     """
     global _lock, _server
     _lock = threading.Lock()

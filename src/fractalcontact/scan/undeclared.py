@@ -22,8 +22,8 @@ _REPEATED, _DOMINANT = 30, 10.0
 _SAMPLE = 500_000
 #: Fewest different heights of a scan; fewer are those of a synthetic surface of a few levels.
 _MIN_LEVELS = 16
-#: Numbers on either side with whose counts the count of a number is compared, and most numbers
-#: examined.
+#: Neighbouring numbers, on either side, whose counts are compared with that of a number; and most
+#: numbers examined.
 _BESIDE, _MAX_LOOKED_AT = 5, 200
 #: Largest number of whole numbers expected by chance where a whole number is a rarity.
 _RARE = 0.3

@@ -42,7 +42,7 @@ _EXPONENTS: tuple[tuple[str, float, str, str, dict[str, str]], ...] = (
 )
 #: Lines of the null models.
 _NULLS = ("--", ":")
-#: Load at which the caption gives the three, p / (E* h'_rms).
+#: Load at which the caption quotes the three exponents, p / (E* h'_rms).
 _QUOTED = 0.01
 
 
