@@ -14,7 +14,7 @@ from ..core.datasets import labelled
 from ..core.limits import MAX_TOUCHING
 from ..core.per_curve import per_curve
 from ..core.settings import Material
-from ..core.text import percent
+from ..core.text import compact, percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_JUDGED, POOR, STRENGTH, USUAL
 
@@ -117,7 +117,7 @@ def elastic_model_validity(
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
         size = "small" if by_slope == GOOD else "too steep"
-        judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
+        judgements.append((by_slope, SLOPE, f"rms slope {compact(rms_slope)}, {size}"))
     judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
     verdict, by, _ = judgements[0]
     # A load far below the largest that the window carries is no reason for a verdict.
