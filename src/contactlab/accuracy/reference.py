@@ -34,7 +34,7 @@ FRACTION_MET = 0.02
 CLOSED = 1e-3
 #: Most interpenetrating nodes for direct elimination within seconds.
 ELIMINATED = 4500
-# Hertz's contact and the punch reach this fraction of the way from the centre to the edge.
+# Fraction of the way from the centre to the edge that Hertz's contact and the punch reach.
 REACH = 0.8
 # Closure of the punch relative to its radius; the problem is linear and does not depend on it.
 PUNCH_CLOSURE = 0.01

@@ -40,7 +40,7 @@ _FINE = np.linspace(-0.02, 0.02, 41)
 #: (A filled square has 2, a square turned by 45 degrees 4.)
 MAX_OUTLINE = 4.0
 
-#: Sets of less than this dimension have no outline: a line of the plane misses them.
+#: Least dimension of a set with an outline: a line of the plane misses sets of less.
 MIN_WITH_OUTLINE = 1.0
 
 #: Least ratio by which a further term of the outline must lower the misfit.
@@ -156,7 +156,7 @@ def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -
 
 
 def law_terms(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> LawTerms:
-    """Terms, in cells, of a law from :func:`best_law` and of what it was fitted to."""
+    """Terms, in cells, of a law of :func:`best_law`, fitted to its sizes and counts."""
     sizes, count = _checked(sizes, count)
     rho = (sizes - law.c) / side
     powers = rho[:, np.newaxis] ** (2 - law.dimension + np.arange(law.outline + 1))

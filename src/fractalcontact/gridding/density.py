@@ -15,14 +15,15 @@ SAMPLE = 50_000
 #: points is examined as a whole.
 PATCHES = 20
 PATCH_POINTS = 3_000
-#: Nothing was measured where a circle without points has a radius above this multiple of the usual
-#: circle through three neighbours. That one is 0.62 to 0.73 times the root of the area per point,
-#: for lattices and random clouds alike, and half the distance of the lines where a scanner's lines
-#: lie far apart; chance leaves a circle of the multiple once in 10^5 points.
+#: Least radius of a circle without points in which nothing was measured, in radii of the usual
+#: circle through three neighbours. The usual radius is 0.62 to 0.73 times the root of the area per
+#: point, for lattices and random clouds alike, and half the distance of the lines where a scanner's
+#: lines lie far apart; chance leaves a circle of the multiple once in 10^5 points.
 HOLE_FACTOR = 3.0
-#: The root of the area per point is 1.0 to 1.1 nearest distances on a lattice, 1.1 to 1.2 in clouds
-#: of scanners and 2.1 in a random cloud. Above this the points lie at random, along lines or in
-#: clumps: a grid at the nearest distance would have many cells a point, none of them measured.
+#: Largest root of the area per point, in nearest distances, of points that do not lie at random,
+#: along lines or in clumps: it is 1.0 to 1.1 on a lattice, 1.1 to 1.2 in clouds of scanners and 2.1
+#: in a random cloud. Of other points a grid at the nearest distance would have many cells a point,
+#: none of them measured.
 UNEVEN = 1.5
 #: Least distance of a far cell to all points, in sides of the square that a point, or the cell, has
 #: to itself: on a regular lattice no cell is farther than 0.71 of that side.

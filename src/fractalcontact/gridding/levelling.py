@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from ..core.limits import STEEP_TILT
 
-#: Points this many quartile distances beyond the quartiles do not decide where the plane lies
-#: (Tukey's far-out fence): spikes and unmarked missing heights.
+#: Distance from the quartiles, in quartile distances, beyond which points do not decide where the
+#: plane lies (Tukey's far-out fence): spikes and unmarked missing heights.
 _FENCE = 3.0
 #: Largest tilt, degrees, at which the points alone show which side of the face is its upper one.
 UPRIGHT = 85.0  # degrees

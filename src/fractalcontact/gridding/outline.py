@@ -30,7 +30,7 @@ MAX_CORNER_ZEROS = 0.005
 #: Largest fraction of an outline along which zeros may lie; with more, the zeros most likely lie
 #: outside the specimen.
 MAX_RIM_ZEROS = 0.5
-#: A disc without a stated centre may leave this fraction of the contact outside.
+#: Largest fraction of the contact outside a disc without a stated centre.
 MAX_OUTSIDE = 0.01
 
 

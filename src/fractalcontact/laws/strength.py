@@ -28,7 +28,8 @@ from ..states.states import DIP, SOLVER_ERROR
 from .contact_strength import NAMES as CONTACT_FIELDS
 from .contact_strength import contact_strength
 
-#: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
+#: Fraction of the largest offset beyond which the intervals enter the residual strength, their
+#: mean.
 RESIDUAL_FROM = 0.5
 
 

@@ -21,12 +21,12 @@ _FINEST, _COARSEST = 512, 64
 _MIN_CELLS = 64  # common to both faces, to know a gap's spread
 _MAX_STEPS, _MAX_HALVINGS = 50, 8
 _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the search
-#: A cell does not count if its gap is further than this many robust standard deviations from the
-#: centre of all gaps. The biweight with it is 95 % as efficient as least squares where errors are
+#: Distance of a gap from the centre of all gaps, in robust standard deviations, beyond which its
+#: cell does not count. The biweight with it is 95 % as efficient as least squares where errors are
 #: Gaussian (Beaton and Tukey, Technometrics 16 (1974) 147).
 _BIWEIGHT = 4.685
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-#: The limit follows the gap until it changes by less than this part, this number of times at most.
+#: Relative change of the limit at which it no longer follows the gap, and most times that it does.
 _SAME_LIMIT, _MAX_LIMITS = 0.02, 4
 _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 

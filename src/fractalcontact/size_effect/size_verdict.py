@@ -19,14 +19,14 @@ from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UND
 
 #: Largest difference of exponents by rounding alone.
 ROUNDING = 1e-9
-#: A prediction whose 95 % interval is wider than this, end to end, is inconclusive.
+#: Largest width of the 95 % interval of a conclusive prediction.
 WIDEST_PREDICTION = 0.4
-#: A prediction or an exponent smaller than this is no size effect.
+#: Largest size of a prediction or an exponent that is no size effect.
 NO_EFFECT = 0.02
-#: A slope whose own 95 % interval is wider than this is inconclusive.
+#: Largest width of the 95 % interval of a conclusive slope.
 WIDEST_SLOPE = 1.0
-#: A larger condition number |d ln sigma_0 / d ln sigma*| is inconclusive: what the area of 30 nodes
-#: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
+#: Largest condition number |d ln sigma_0 / d ln sigma*| that is conclusive: what the area of 30
+#: nodes leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
 #: Why a prediction or a slope is not judged or not decided.

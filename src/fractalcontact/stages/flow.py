@@ -36,7 +36,7 @@ _MAP = ("flow_y", "flow_x")
 
 #: Distance by which faces are moved apart to see what their fit changes, mm.
 SHIFT = 0.1
-#: The error of the mean gap over windows counts as known up to this fraction of the gap.
+#: Largest error of the mean gap over windows, as a fraction of the gap, that counts as known.
 _MAX_GAP_ERROR = 1.0
 #: Reason of a number without an interval, as the quarters alone would make it far too narrow.
 _GAP_UNKNOWN = "no interval, as the mean gap of other windows may differ by more than its value"

@@ -32,7 +32,7 @@ COMPARED_QUANTITIES = ONCE | UNDER_LOAD
 UNGROUPED = "no group"
 #: Digits to which nominal pressures must agree that specimens are compared under one.
 _DIGITS = 4
-#: Nominal pressures of several specimens that differ by less than this fraction are one.
+#: Largest relative difference of nominal pressures of several specimens that count as one.
 ALIKE = 0.05
 
 
