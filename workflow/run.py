@@ -190,7 +190,7 @@ def _run(command, options, results):
 
 
 class _Stopped(Exception):
-    """This process was told to end, by the signal of this number."""
+    """Signal that told this process to end; the argument is its number."""
 
 
 def _stop(number, frame):

@@ -1,4 +1,4 @@
-"""Statements of a header on the keys of a sidecar, told from lines that only mention a word.
+"""Statements of a header on the keys of a sidecar, apart from lines that only mention a word.
 
 A line states something if it holds nothing else: ``heights in um``, ``dx = 0.1 mm; dy = 0.2 mm``,
 ``NODATA_value -9999``. A key that a line mentions among other words is asked of the user, with the

@@ -42,7 +42,7 @@ def axis_of(name: str) -> tuple[str, bool]:
 
 
 def add_columns(hints: Hints, names: Sequence[str], table: np.ndarray, source: str) -> None:
-    """Suggest the columns of x, y and z that names tell, else ask for them."""
+    """Suggest the columns of x, y and z that names state, else ask for them."""
     said = [axis_of(name) for name in names]
     axes = [axis for axis, _ in said]
     lateral = coordinate_columns(table)

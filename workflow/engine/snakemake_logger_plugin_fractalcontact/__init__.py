@@ -56,7 +56,7 @@ class LogHandler(LogHandlerBase):
     writes_to_file = needs_rulegraph = False
 
     def __post_init__(self):
-        """Begin without any job."""
+        """Start with empty tables of jobs."""
         self.results = os.environ.get(RESULTS, "results")
         self.dry_run, self.begin = self.common_settings.dryrun, time.time()
         #: Jobs by number: title, logs and reason; start of running jobs; titles of failed ones.
@@ -222,7 +222,7 @@ def _cut(text, width):
 
 
 def _took(begin):
-    """Time since then in words: 8 s, 2 min 10 s, 3 h 5 min."""
+    """Time since a start in words: 8 s, 2 min 10 s, 3 h 5 min."""
     seconds = round(time.time() - begin)
     minutes, hours = seconds // 60, seconds // 3600
     if seconds < 100:

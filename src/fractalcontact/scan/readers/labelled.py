@@ -97,7 +97,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _direction(attributes: dict, options: ScanOptions, where: str) -> str:
-    """Which way heights grow by the attribute ``positive``, up where it is not there."""
+    """Direction in which heights grow, by the attribute ``positive``; up without it."""
     said = str(attributes.get("positive", "up")).strip("\0 ").lower()
     for direction in ("up", "down"):
         if re.fullmatch(rf"{direction}(wards?)?", said):
