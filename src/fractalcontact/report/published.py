@@ -67,7 +67,7 @@ class Number(NamedTuple):
 
     @property
     def value(self) -> float:
-        """Value of the atlas."""
+        """Value as the atlas has it, unrounded."""
         return float(self.estimate.value)
 
     @property
@@ -124,7 +124,7 @@ class Row:
 
     @property
     def stage(self) -> str:
-        """Stage of the atlas."""
+        """Stage of the atlas that holds the variable."""
         return self.source.partition("/")[0]
 
     @property
@@ -190,7 +190,7 @@ def stages_of(*places: str) -> set[str]:
 
 @cache
 def row_of(name: str) -> Row:
-    """Row of this name."""
+    """Row of the register by the name of its quantity."""
     return next(row for row in published() if row.name == name)
 
 
