@@ -24,7 +24,7 @@ from . import running
 
 
 def mark_without_provenance(results, settings):
-    """Number of results without a record, which are marked as incomplete like those of killed jobs."""
+    """Number of results without a record, which are marked as incomplete as after a killed job."""
     if settings.persistence_backend is PersistenceBackend.DB:
         records = DbPersistence(db_url=settings.persistence_backend_db_url)
     else:
