@@ -102,7 +102,7 @@ class LoadCurve:
     def decay_length(self) -> np.ndarray:
         """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e.
 
-        That of the curve through the loads where states that yield have no stiffness.
+        Where states that yield have no stiffness, it is that of the curve through the loads.
         """
         pressure = self.forces / self.loading.area
         length = pressure / self.curve["interface_stiffness"].values

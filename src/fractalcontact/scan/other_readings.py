@@ -45,7 +45,7 @@ def with_other_readings(
     specimen : xr.Dataset
         From :func:`surface.specimen.make_specimen`.
     faces : tuple of DataArray (y, x)
-        That it was made from.
+        Both faces that the specimen was made from.
     scans : tuple of UngriddedScan
         Numbers of both files, from :func:`scan.read.faces_in_mm`.
     options : ScanOptions

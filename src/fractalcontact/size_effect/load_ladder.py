@@ -125,11 +125,11 @@ class _LoadedSize(SubWindows):
     sampling : (resolution, step) ndarray
         Relative sampling error of that of a window alone.
     left : (resolution, step, left_out) ndarray
-        Fractions of it, see :mod:`states.left_out`.
+        Fractions of that area, see :mod:`states.left_out`.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
-        Of a window alone at the finest resolution, a step each.
+        Domains of a window alone at the finest resolution, one for each step.
     bulk_compliance : float
         Bulk settlement over sigma_0, mm/MPa.
     """

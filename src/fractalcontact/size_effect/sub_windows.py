@@ -25,7 +25,7 @@ class SubWindows(ABC):
     pressures : (step,) ndarray
         Nominal, MPa, ascending.
     where : str
-        What is loaded, for errors.
+        Name of the loaded specimen or window, for errors.
     factors : sequence of int, optional
         Resolutions k, the finest first.
     places : (window,) int array_like, optional

@@ -88,9 +88,9 @@ def add_exponents(
     function : callable
         Exponent of one curve, fitted over log b, b in mm.
     words : str
-        What the exponent is of.
+        Name of the quantity whose exponent it is, in words.
     points : str
-        What was fitted.
+        Name of the fitted numbers, in words.
     """
     names = {
         name: ("1", words),

@@ -59,7 +59,7 @@ def load_steps(
     solving : mapping
         Options of :func:`contact.solve.solve_contact`.
     where : str
-        What is loaded, for errors.
+        Name of the loaded specimen or window, for errors.
 
     Raises
     ------

@@ -74,9 +74,9 @@ class Workflow:
     Attributes
     ----------
     folder : pathlib.Path
-        Its checkout, with CITATION.cff.
+        Folder of the checkout, with CITATION.cff.
     main : str
-        Its main file, in that folder.
+        Main file of the workflow, in that folder.
     parts : tuple of str
         Patterns of its other files there.
     language, url, version : str

@@ -34,7 +34,7 @@ class Cost:
         Megabytes.
     bytes_per_node : float
     seconds : float
-        Of the clock on a core of its own.
+        Seconds of the clock on a core of its own.
     us_per_node : float
         Microseconds.
     state : float
