@@ -15,7 +15,7 @@ import numpy as np
 from fractalcontact.error_budget.refinement import FACTORS, curve_errors
 from fractalcontact.roughness.dimension import slope_statistics
 from fractalcontact.states.state_scalars import state_errors
-from fractalcontact.states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
+from fractalcontact.states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.elastic.halfspace import HalfSpace
 
@@ -53,7 +53,7 @@ def stated_and_true(heights, loads):
             raw = np.array([state.area for state, _ in states])
             solver = solver_errors([state for state, _ in states], forces)
     levels = np.array([values[factor] for factor in FACTORS])
-    length = pressure / levels[0, list(QUANTITIES).index("stiffness")]
+    length = pressure / levels[0, list(STATE_QUANTITIES).index("stiffness")]
     rise = summit(heights) - float(heights.max())
     fewer = levels.copy()
     fewer[2] = np.nan
@@ -105,7 +105,7 @@ def main(arguments):
         rows = csv.writer(file)
         rows.writerow(["seed", "quantity", "load", "stated", "stated from s/2", "true"])
         for (i, j, k), true in np.ndenumerate(found[:, 2]):
-            name, load = list(QUANTITIES)[j], options.loads[k]
+            name, load = list(STATE_QUANTITIES)[j], options.loads[k]
             rows.writerow([seeds[i], name, load, *found[i, :2, j, k], true])
     stated, true = found[:, :2], found[:, 2:]
     known = np.isfinite(stated) & np.isfinite(true)
@@ -115,7 +115,7 @@ def main(arguments):
     sys.stdout.write(
         "quantity          load  joints  covered from s/4  stated/true  from s/2  stated/true\n"
     )
-    for j, name in enumerate(QUANTITIES):
+    for j, name in enumerate(STATE_QUANTITIES):
         for k, load in enumerate(options.loads):
             part = np.s_[:, :, j, k]
             three, two = np.nanmean(covers[part], axis=0)

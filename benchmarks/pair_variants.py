@@ -31,9 +31,9 @@ from fractalcontact.core.limits import DECISIVE
 from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.core.window import cell_side, window_sides
 from fractalcontact.joint.joint import describe_joint, prefractal
-from fractalcontact.joint.overlap import fits_undetermined
 from fractalcontact.laws.closure import closure_curves
 from fractalcontact.laws.closure_laws import fit_hyperbola
+from fractalcontact.laws.scan_errors import fits_undetermined
 from fractalcontact.registration.registration_scatter import motion_variables, scattered_motions
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import overlap_words, suspect_words

@@ -74,7 +74,7 @@ def _options():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("study", type=Path)
     parser.add_argument("--profile", default="default", help="of workflow/profiles")
-    # Loaded libraries survive a fork on Linux, not surely elsewhere.
+    # Loaded libraries survive a fork on Linux, but not reliably elsewhere.
     forks = "fractalcontact" if sys.platform == "linux" else "local"
     parser.add_argument("--executor", default=forks, help="or local, that of Snakemake")
     parser.add_argument("--full", action="store_true", help="at full cost, beside the study")
@@ -192,7 +192,7 @@ def _run(command, options, results):
 
 
 class _Stopped(Exception):
-    """This process was told to end, by the signal of this number."""
+    """Signal that told this process to end; the argument is its number."""
 
 
 def _stop(number, frame):

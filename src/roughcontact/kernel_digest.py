@@ -33,7 +33,8 @@ def _parts(value: Any, seen: set[int]) -> Iterator[str]:
         yield from _parts(sorted(value.targetoptions.items()), seen)
         yield from _of_function(value.py_func, seen)
     elif isinstance(value, _Intrinsic):
-        # Its generated code may use functions without a name, such as overloads of operators.
+        # The generated code of a kernel may use functions without a name, such as overloads of
+        # operators.
         yield from _of_functions(sys.modules[value._defn.__module__], seen)
     elif isinstance(value, FunctionType):
         yield from _of_function(value, seen)

@@ -17,11 +17,11 @@ from fractalcontact.error_budget.other_windows import (
     window_places,
     window_spread,
 )
+from fractalcontact.error_budget.solve_plan import solve_plan
 from fractalcontact.flow.cubic_law import plane_flow
 from fractalcontact.joint.joint import composite_topography, describe_joint
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.plan import solve_plan
 from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import combine, contact_domains
 from fractalcontact.states.subgrid import state_quantities, subgrid

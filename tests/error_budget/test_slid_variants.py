@@ -6,8 +6,8 @@ from made_stages import scan
 from fractalcontact.error_budget.slid_variants import OWN, QUARTER, READ, WINDOW, slid_variants
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
+from fractalcontact.scan.other_readings import OTHER_FACES, READING
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.scan_spread import OTHER_FACES, READING
 from fractalcontact.states.states import combine
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings

@@ -9,7 +9,7 @@ from spreadsheets import FORMULA, formulas_in
 from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.statements.comparison import QUANTITIES, UNDER_LOAD, compare_specimens
+from fractalcontact.statements.comparison import COMPARED_QUANTITIES, UNDER_LOAD, compare_specimens
 
 NAMES = ["flat", "pair", "sliding"]
 
@@ -25,7 +25,7 @@ def tree_of(rows):
 
 def made_row(generator, group, pressures=(0.1, 1.0, 10.0), missing=()):
     variables = {"nominal_pressure": ("load", np.array(pressures))}
-    for name in QUANTITIES:
+    for name in COMPARED_QUANTITIES:
         dims = ("load",) if name in UNDER_LOAD else ()
         value = 1 + 0.1 * generator.random(len(pressures) if dims else None)
         for end, sign in (("", 0), ("_low", -1), ("_high", 1)):

@@ -12,7 +12,7 @@ from fractalcontact.domain.measured_map import read_contact_map
 from fractalcontact.domain.pressure_trend import pressure_trend
 from fractalcontact.figures.draw import draw_figure, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.measured import measured_series, threshold_words
+from fractalcontact.figures.kit.measured_maps import measured_series, threshold_words
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 
 FIGURES = ("contact_maps", "map_trend")

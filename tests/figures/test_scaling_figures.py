@@ -24,7 +24,7 @@ from fractalcontact.domain.renormalisation import extrapolated_pressure
 from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.domains import contact_domain, spread_loads
-from fractalcontact.states.model_validity import model_validity
+from fractalcontact.statements.model_validity import model_validity
 from fractalcontact.states.states import with_pressure
 
 NAMES = (

@@ -10,10 +10,10 @@ from fractalcontact.core.settings import Solver
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.core.window import window_sides
 from fractalcontact.joint.joint import composite_topography, describe_joint
+from fractalcontact.joint.openings import prefractal_openings
 from fractalcontact.laws.closure import (
     FLUSH_FACES,
     FULL_CONTACT,
-    SINGLE_CELLS,
     bulk_settlement,
     closure_curves,
     elastic_dilatancy,
@@ -24,12 +24,12 @@ from fractalcontact.laws.closure import (
 from fractalcontact.laws.conductance import beside_theory
 from fractalcontact.laws.load_curve import closure_at_force, left_out_misses
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.separation import prefractal_openings
-from fractalcontact.states.states import OFFSETS, STATE_VARIABLES, combine
+from fractalcontact.states.states import OFFSETS, REASONS, STATE_VARIABLES, combine
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.slope import ALL_YIELDED, FEW_CELLS
 
 
 def test_bulk_settlement_of_a_square():
@@ -305,8 +305,9 @@ def curves_of(heights, forces):
 
 
 def states_of(curves):
-    """The states that curves were computed from."""
-    return curves[[*STATE_VARIABLES, *OFFSETS]]
+    """The states that curves were computed from, but for the reasons of missing stiffnesses."""
+    reasons = {name: xr.full_like(curves["closure"], "", object) for name in REASONS}
+    return curves.assign(reasons)[[*STATE_VARIABLES, *OFFSETS]]
 
 
 def slid_joint(cells, loads, resolutions=(1,)):
@@ -328,10 +329,11 @@ SOLVER = Solver(1e-7, "love", None)
 def test_a_missing_stiffness_has_its_reason_and_none_is_negative():
     total = xr.DataArray([1.0, 3.0, np.nan, 1.0], dims="state")
     flush = xr.DataArray([False, False, False, True], dims="state")
-    found = interface_stiffness(total, xr.full_like(total, 2.0)).where(~flush)
+    found = interface_stiffness(1 / total, 1 / 2.0).where(~flush)
     np.testing.assert_allclose(found, [2.0, np.nan, np.nan, np.nan])
-    reasons = stiffness_reason(found, total, flush).values.tolist()
-    assert reasons == ["", FULL_CONTACT, SINGLE_CELLS, FLUSH_FACES]
+    no_total = xr.DataArray(["", "", ALL_YIELDED, FEW_CELLS], dims="state")
+    reasons = stiffness_reason(found, total, flush, no_total).values.tolist()
+    assert reasons == ["", FULL_CONTACT, ALL_YIELDED, FLUSH_FACES]
 
 
 def test_the_closure_of_polished_faces_in_full_contact_is_undetermined():

@@ -19,7 +19,7 @@ from fractalcontact.joint.jrc import FITS, profile_roughness
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.laws.strength import (
     ABOVE_SCALE,
-    FULL,
+    HALF_TOUCHES,
     OF_WINDOW,
     OFF_LENGTHS,
     OWN,
@@ -494,7 +494,7 @@ def test_a_peak_is_a_bound_only_where_its_own_angle_was_held():
     assert judged["peak_over_barton"].tolist() == [1.5, 0.5]
     nearly_full = judged_strengths(values, np.array([False, True]))
     assert not nearly_full["peak_strength_valid"].any()
-    assert nearly_full["peak_strength_reason"].tolist() == [TRUNCATED, FULL]
+    assert nearly_full["peak_strength_reason"].tolist() == [TRUNCATED, HALF_TOUCHES]
 
 
 def test_no_strength_by_dilatancy_where_half_of_the_window_touches():
@@ -503,5 +503,5 @@ def test_no_strength_by_dilatancy_where_half_of_the_window_touches():
     specimen = make_specimen(scan(lower), window=3.2, reach=1.6, name="one")
     found = strength_of(specimen, settings([0.2, 0.4, 0.8], hardness=40.0))
     np.testing.assert_allclose(found["nominal_pressure"], [0.5, 5, 25])
-    assert (found["peak_strength_reason"] == FULL).values.tolist() == [[False, False, True]]
+    assert (found["peak_strength_reason"] == HALF_TOUCHES).values.tolist() == [[False, False, True]]
     assert not found["shear_strength_valid"].isel(normal_force=2).any()

@@ -10,8 +10,8 @@ from materials import ROCK
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.laws.closure import SINGLE_CELLS
 from fractalcontact.study.atlas import read_atlas
+from roughcontact.contact.slope import FEW_CELLS
 
 LOADS = ["0.2 MPa", "1 MPa", "5 MPa", "20 MPa", "60 MPa", "120 MPa"]
 HARDNESS = 150.0
@@ -92,7 +92,7 @@ def test_figures_say_why_points_are_missing(atlas, figure):
         drawing = drawer_of(figure)(atlas, "specimen")
     shown = [text.get_text() for legend in drawing.figure.legends for text in legend.get_texts()]
     shown += [text.get_text() for axes in drawing.figure.axes for text in axes.texts]
-    assert SINGLE_CELLS in re.sub(r"\s+", " ", " ".join(shown))
+    assert FEW_CELLS in re.sub(r"\s+", " ", " ".join(shown))
     table = drawing.data
     ends = "stiffness_MPa_per_mm", "compliance_mm_per_MPa"
     known = [name for name in table if name.endswith(ends)]

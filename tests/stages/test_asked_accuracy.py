@@ -1,6 +1,6 @@
 """The error of the closure that a study asks for, beside which the page shows the grid's."""
 
-from fractalcontact.stages.states import requested_accuracy
+from fractalcontact.stages.closure_and_box_counts import requested_accuracy
 from fractalcontact.study.configuration import solver_settings
 
 

@@ -15,9 +15,9 @@ from unchecked_settings import resolve_unchecked
 
 from fractalcontact.core.window import window_sides
 from fractalcontact.joint.joint import describe_joint
+from fractalcontact.joint.openings import prefractal_openings
 from fractalcontact.laws.closure import closure_curves
 from fractalcontact.stages.strength import size_and_strength
-from fractalcontact.states.separation import prefractal_openings
 from fractalcontact.states.states import SOLVER_ERROR, combine
 from fractalcontact.states.sweep import joint_states
 from fractalcontact.study.configuration import solver_settings

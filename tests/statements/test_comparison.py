@@ -6,7 +6,7 @@ import xarray as xr
 from scipy import stats
 
 from fractalcontact.statements.comparison import (
-    QUANTITIES,
+    COMPARED_QUANTITIES,
     UNDER_LOAD,
     _dilatancy,
     compare_specimens,
@@ -20,7 +20,7 @@ PRESSURES = [0.1, 1.0, 10.0]
 def row(value, half_width, group, pressures=PRESSURES):
     """A row whose quantities are all the same."""
     variables = {"nominal_pressure": ("load", np.array(pressures, float))}
-    for name in QUANTITIES:
+    for name in COMPARED_QUANTITIES:
         dims = ("load",) if name in UNDER_LOAD else ()
         shape = (len(pressures),) if dims else ()
         for end, sign in (("", 0), ("_low", -1), ("_high", 1)):
@@ -36,7 +36,7 @@ def test_a_group_has_the_mean_of_its_specimens_and_its_student_interval():
     compared = compare_specimens({f"s{i}": row(v, 0.1, "rough") for i, v in enumerate(values)})
     low, high = stats.t.interval(0.95, 3, np.mean(values), stats.sem(values))
     one = compared.isel(group_name=0)
-    for name in QUANTITIES:
+    for name in COMPARED_QUANTITIES:
         assert np.allclose(one[f"{name}_mean"], np.mean(values))
         assert np.allclose(one[f"{name}_mean_low"], low)
         assert np.allclose(one[f"{name}_mean_high"], high)

@@ -9,12 +9,13 @@ from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.tolerance import tolerance
 from fractalcontact.domain.box_dimension import box_dimension
+from fractalcontact.error_budget.solve_plan import solve_plan
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.plan import solve_plan, solved_loads
+from fractalcontact.states.plan import solved_loads
 from fractalcontact.states.state_scalars import numbers_of
-from fractalcontact.states.states import UNCERTAIN, combine
+from fractalcontact.states.states import WITH_SOLVER_ERROR, combine
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.specimen import make_specimen
@@ -82,7 +83,7 @@ def test_what_is_no_share_is_refused_by_its_key(text):
 @pytest.mark.parametrize("hardness", [None, 600.0])
 def test_states_lie_within_their_errors_of_exact_ones(hardness):
     """Loosely solved states beside the same to 1e-10."""
-    within = {name: [] for name in UNCERTAIN}
+    within = {name: [] for name in WITH_SOLVER_ERROR}
     dimensions = []
     for seed in range(5):
         height = self_affine((64, 64), SPACING, 0.6, seed=seed, rms=0.05)

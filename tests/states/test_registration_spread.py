@@ -8,7 +8,7 @@ from fractalcontact.core.intervals import t_quantile
 from fractalcontact.registration.registration_scatter import motion_variables
 from fractalcontact.registration.surface_motion import Motion
 from fractalcontact.states.registration_spread import (
-    QUANTITIES,
+    SPREAD_QUANTITIES,
     moved_specimen,
     registration_spread,
     registration_values,
@@ -33,7 +33,7 @@ def spread_of(joint):
 
 def test_registrations_that_are_none_have_no_spread():
     spread = spread_of(loading([Motion(MIDDLE, MIDDLE)] * 3))
-    assert spread.keys() == set(QUANTITIES)
+    assert spread.keys() == set(SPREAD_QUANTITIES)
     assert all((of < 1e-9).all() for of in spread.values())
     assert spread_of(loading([])) is None
 
@@ -57,7 +57,7 @@ def test_the_spread_is_that_of_the_values_and_grows_with_the_motions():
     values = registration_values(loading(far))
     spread = spread_of(loading(far))
     values["seated_closure"] = values["closure"] - values["closure"][:, :1]
-    for name in QUANTITIES:
+    for name in SPREAD_QUANTITIES:
         assert values[name].shape == (3, 2)
         half = t_quantile(2) * values[name].std(axis=0, ddof=1)
         np.testing.assert_allclose(spread[name], half)

@@ -4,17 +4,15 @@ import numpy as np
 import pytest
 from tiny_pairs import loading_of, pair
 
-from fractalcontact.states.scan_spread import (
+from fractalcontact.scan.other_readings import (
     MARKS,
     OTHER_FACES,
     OTHER_MARKS,
     READING,
     other_readings,
-    reading_values,
-    scan_spread,
-    wider_spread,
 )
-from fractalcontact.states.subgrid import QUANTITIES, SOUND
+from fractalcontact.states.scan_spread import reading_values, scan_spread, wider_spread
+from fractalcontact.states.subgrid import SOUND, STATE_QUANTITIES
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -43,7 +41,7 @@ def test_a_single_reading_has_no_spread():
 
 def test_readings_that_differ_by_their_height_alone_have_no_spread():
     spread = spread_of(loading(np.full((48, 48), 0.3)))
-    assert spread.keys() == {*QUANTITIES, "seated_closure"}
+    assert spread.keys() == {*STATE_QUANTITIES, "seated_closure"}
     for name, of in spread.items():
         np.testing.assert_allclose(of, 0, atol=1e-6, err_msg=name)
 
@@ -52,7 +50,7 @@ def test_the_spread_is_the_largest_distance_of_a_reading_from_this_one():
     rough = 0.05 * self_affine((48, 48), 0.5, 0.6, rms=1.0, seed=3)
     joint = loading(rough, 3 * rough)
     values, spread = reading_values(joint), spread_of(joint)
-    for name in QUANTITIES:
+    for name in STATE_QUANTITIES:
         of = values[name]
         assert of.shape == (3, 2)
         np.testing.assert_allclose(spread[name], np.abs(of[1:] - of[0]).max(axis=0))

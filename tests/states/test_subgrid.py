@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from fractalcontact.states.numerical_error import (
-    UNCERTAIN,
-    closure_error,
+    UNCERTAIN_FRACTION,
+    closure_numerical_error,
     numerical_error,
 )
 from fractalcontact.states.subgrid import (
-    QUANTITIES,
+    STATE_QUANTITIES,
     state_quantities,
     subgrid,
     subgrid_states,
@@ -96,12 +96,14 @@ def test_errors_cover_the_exact_solution_of_a_sphere(place):
     edge = (raw - levels[0, 2]) / raw
     length = edge * force / area / levels[0, 3]
     found = [
-        closure_error(levels[0, 0], levels[:, 1], length, summit(heights) - heights.max()),
+        closure_numerical_error(
+            levels[0, 0], levels[:, 1], length, summit(heights) - heights.max()
+        ),
         numerical_error("separation", levels[:, 1], length),
         numerical_error("area_corrected", levels[:, 2], levels[0, 2] * edge),
         numerical_error("stiffness", levels[:, 3], levels[0, 3] * edge),
     ]
-    for name, of_name, value, true in zip(QUANTITIES, found, levels[0], exact, strict=True):
+    for name, of_name, value, true in zip(STATE_QUANTITIES, found, levels[0], exact, strict=True):
         assert abs(value - true) <= of_name.error, name
         assert of_name.error <= 0.25 * abs(true), name
 
@@ -128,7 +130,7 @@ def test_separation_knows_nothing_of_the_highest_node(rough):
         for heights in (rough, spiked)
         for state, highest in subgrid_states(heights, space, 1, [2e4], {"rtol": 1e-8}, "")
     ]
-    gained = {name: found[1][name] - found[0][name] for name in QUANTITIES}
+    gained = {name: found[1][name] - found[0][name] for name in STATE_QUANTITIES}
     assert gained["closure"] == pytest.approx(0.03, abs=2e-3)
     assert abs(gained["separation"]) < 2e-3
 
@@ -154,7 +156,7 @@ def test_a_power_law_is_extrapolated_exactly(order):
     assert found.order == pytest.approx(order)
     assert found.limit == pytest.approx(5)
     beyond = 0.3 * 0.25**order
-    assert found.error == pytest.approx(0.3 + UNCERTAIN * beyond)
+    assert found.error == pytest.approx(0.3 + UNCERTAIN_FRACTION * beyond)
 
 
 def test_orders_are_bounded():
@@ -173,7 +175,7 @@ def test_what_is_not_monotone_is_not_extrapolated(values):
 
 def test_with_two_spacings_the_error_exceeds_their_change():
     found = numerical_error("any", [1.0, 1.2, np.nan])
-    assert found.error == pytest.approx(0.2 * (1 + UNCERTAIN))
+    assert found.error == pytest.approx(0.2 * (1 + UNCERTAIN_FRACTION))
     assert np.isnan(found.limit)
 
 
@@ -189,6 +191,6 @@ def test_errors_scale_with_the_unit_and_not_with_the_zero():
 
 
 def test_closures_that_gain_only_their_summit_are_off_by_its_rise():
-    found = closure_error(0.3, [0.2, 0.2, 0.2], 0.0, 0.05)
+    found = closure_numerical_error(0.3, [0.2, 0.2, 0.2], 0.0, 0.05)
     assert found.error == pytest.approx(0.05)
-    assert closure_error(0.3, [0.2, 0.2, 0.2], 0.01, 0.05).error > 0.05
+    assert closure_numerical_error(0.3, [0.2, 0.2, 0.2], 0.01, 0.05).error > 0.05

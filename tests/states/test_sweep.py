@@ -17,7 +17,7 @@ from fractalcontact.joint.joint import (
 )
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.state_scalars import numbers_of, state_errors
+from fractalcontact.states.state_scalars import NOT_WANTED, numbers_of, state_errors
 from fractalcontact.states.states import (
     DIP,
     MAP_PRESSURE,
@@ -79,8 +79,12 @@ def test_states_solved_lightly_lack_nothing_but_dips_and_coarse_stiffness(specim
     loading = JointLoading(specimen, direction, cells, SETTINGS, SOLVER)
     full, light = (contact_states(loading, [1, 2], lightly=one) for one in (False, True))
     stiffness = [name for name in light if name.startswith("stiffness")]
-    assert len(stiffness) == 3
-    xr.testing.assert_equal(light[stiffness], full[stiffness].where(full["resolution"] == 1))
+    assert len(stiffness) == 4
+    fine = full["resolution"] == 1
+    numbers = [name for name in stiffness if name != "stiffness_reason"]
+    xr.testing.assert_equal(light[numbers], full[numbers].where(fine))
+    reasons = full["stiffness_reason"].where(fine, NOT_WANTED).where(full["solved"], "")
+    xr.testing.assert_equal(light["stiffness_reason"], reasons)
     xr.testing.assert_identical(light.drop_vars(stiffness), full.drop_vars([*stiffness, DIP]))
 
 

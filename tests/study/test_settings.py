@@ -12,9 +12,9 @@ from places import ROOT
 from fractalcontact.core import settings
 from fractalcontact.ensemble.realisations import ensemble
 from fractalcontact.measured.stage import measured_stage
+from fractalcontact.stages.closure_and_box_counts import state_stages
 from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.specimen import stages_of_scan
-from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.states.sweep import joint_states

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core import settings as sections
+from fractalcontact.stages.closure_and_box_counts import state_stages
 from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.specimen import specimen_stages
-from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.states.sweep import joint_states

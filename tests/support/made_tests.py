@@ -8,8 +8,8 @@ from made_stages import given
 
 from fractalcontact.core.keys import validate
 from fractalcontact.measured.stage import measured_stage
-from fractalcontact.study.measured import resolve_tests
-from fractalcontact.study.measured_keys import Tests
+from fractalcontact.study.laboratory_keys import Tests
+from fractalcontact.study.laboratory_tests import resolve_tests
 
 #: Measured over computed.
 PART = 0.9

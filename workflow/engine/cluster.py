@@ -11,7 +11,7 @@ from fractalcontact.core.errors import InputError
 PATIENCE = 60
 _MORE = "the next attempt, if one is left (retries in the profile), asks for twice as much"
 _MEMORY = f"the cluster ended it, it took more memory than asked for; {_MORE}"
-#: Signs in the log of SLURM's executor, which it names beside the job's own, and their reasons.
+#: Patterns in the log of a job, which SLURM's executor writes, and the reasons that they stand for.
 ENDED = {
     "DUE TO TIME LIMIT": f"the cluster ended it, its time was over; {_MORE}",
     "Exceeded job memory limit": _MEMORY,
@@ -45,7 +45,7 @@ def left_in_queue(profile):
         *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
         failed = done.returncode
     except OSError:
-        return []  # there is no cluster: to submit a job says so, and why
+        return []  # without a cluster, submitting a job says so, and why
     except subprocess.TimeoutExpired:
         failed, why = True, f"no answer in {PATIENCE} s"
     if failed:

@@ -111,7 +111,7 @@ class Code:
             if its == room and whole:
                 continue
             package = f"{self.folder}/{target[len(self.folder) + 1 :].partition('/')[0]}"
-            if target == package:  # what of it, only the running program knows
+            if target == package:  # only the running program knows which of its modules it imports
                 yield from (path for path in self._rooms if path.startswith(package))
             elif room in (None, its) and os.path.isfile(f"{target}.py"):
                 yield from (f"{target}.py", package)

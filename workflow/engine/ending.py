@@ -1,4 +1,4 @@
-"""SIGTERM answered in a thread, so that a run that is told to end does end.
+"""SIGTERM answered in a thread, so that a run told to end does end.
 
 Snakemake 9.27 answers the signal in its main thread, with a lock that is not reentrant
 (``JobScheduler.exit_gracefully``). The main thread may hold that lock, as it does while it takes in
@@ -10,7 +10,7 @@ without, leave ``answer_in_thread`` out of ``begin`` in ``workflow/rules/records
 import signal
 import threading
 
-#: Set when this run is told to end.
+#: Event that is set when this run is told to end.
 TOLD = threading.Event()
 
 
@@ -26,5 +26,5 @@ def answer_in_thread(number: int = signal.SIGTERM) -> None:
 
 
 def _answer(answer, told):
-    TOLD.set()  # here, as the event has such a lock too
+    TOLD.set()  # set in this thread, because the event has such a lock too
     answer(*told)

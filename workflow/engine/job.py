@@ -52,7 +52,9 @@ def job(snakemake):
         if _told_to_stop:  # the work may have taken the interrupt for an error of its own
             raise KeyboardInterrupt
         checksums.record(results, _below(results, snakemake.output))
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
+        signal.signal(
+            signal.SIGTERM, signal.SIG_IGN
+        )  # the work is done: the job ends at once anyway
         log.info(
             "%s %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, "
             "memory %.0f MB",
@@ -60,7 +62,7 @@ def job(snakemake):
             time.perf_counter() - begin,
             SOLVING.seconds,
             SOLVING.problems,
-            time.process_time(),  # imports counted, but where they were loaded before its fork
+            time.process_time(),  # includes imports, except those loaded before the fork
             resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KILOBYTE / 1e6,
         )
     except (InputError, NotConverged, OutputError) as error:
@@ -100,7 +102,7 @@ def _say_error(said):
 
 
 def _found_before(snakemake):
-    """Error of the attempt before this one, if this one would fail the same way."""
+    """Error of the previous attempt, if this attempt would fail the same way."""
     path = Path(snakemake.log[0])
     if snakemake.resources.get("attempt", 1) == 1 or not path.is_file():
         return ""
@@ -119,5 +121,5 @@ def _stop(number, frame):
 
 
 def _below(folder, paths):
-    """Files among these that the study itself makes."""
+    """Paths that lie below a folder."""
     return [path for path in map(Path, paths) if path.is_relative_to(folder)]

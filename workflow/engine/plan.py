@@ -52,7 +52,7 @@ class Plan:
             return self._known[path]
         try:
             return self._computed.of(path)
-        except OSError:  # none of a file that cannot be read, which its job explains
+        except OSError:  # no digest of a file that cannot be read; its job explains why
             return ""
 
     def digests(self, *files):

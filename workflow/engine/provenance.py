@@ -24,7 +24,7 @@ from . import running
 
 
 def mark_without_provenance(results, settings):
-    """Number of such results, which are marked as incomplete, as those of killed jobs are."""
+    """Number of results without a record, which are marked as incomplete as after a killed job."""
     if settings.persistence_backend is PersistenceBackend.DB:
         records = DbPersistence(db_url=settings.persistence_backend_db_url)
     else:
@@ -36,7 +36,7 @@ def mark_without_provenance(results, settings):
     lacking = [file for file in files if not _has_provenance(file, records, results, is_there)]
     logging.disable(logging.NOTSET)
     for file in lacking:
-        records.cleanup_metadata(file)  # Snakemake itself stumbles over some that are damaged
+        records.cleanup_metadata(file)  # Snakemake itself fails on some damaged records
     records.started(SimpleNamespace(output=lacking))
     return len(lacking)
 

@@ -4,7 +4,7 @@ from _files import read_inputs, write_outputs
 from engine.job import job
 
 from fractalcontact.core.settings import Solver, StateSettings, read
-from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.closure_and_box_counts import state_stages
 
 with job(snakemake) as log:
     given = snakemake.params

@@ -60,9 +60,9 @@ def bearing_area(composite: ArrayLike, space: HalfSpace, *, closure: float) -> C
 def foundation_modulus(space: HalfSpace) -> float:
     """Foundation modulus p / u of the Winkler model, MPa/mm.
 
-    That of the window uniformly loaded: its mean settlement under a pressure p on a half-space is
-    0.9464 p b / E* for a square of side b. The load as a whole then sinks in as far as on the
-    half-space; single spots of contact sink in too far.
+    The modulus is that of the window uniformly loaded: its mean settlement under a pressure p on a
+    half-space is 0.9464 p b / E* for a square of side b. The load as a whole then sinks in as far
+    as on the half-space; single spots of contact sink in too far.
     """
     sides = [n * d for n, d in zip(space.shape, space.spacing, strict=True)]
     return space.modulus / rectangle_mean_displacement(*sides)

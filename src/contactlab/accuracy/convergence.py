@@ -25,7 +25,7 @@ PUNCH_CLOSURE, PUNCH_DEPTH = 0.01, 1.0
 
 #: Quantities compared with the exact solution, and the order in s of their errors that Richardson's
 #: extrapolation assumes. The number of nodes on a disc scatters with s^1.5 about its area.
-QUANTITIES: dict[str, dict[str, float]] = {
+PROBLEM_QUANTITIES: dict[str, dict[str, float]] = {
     "hertz": {"force": 2, "radius": 1, "peak_pressure": 2},
     "punch": {"force": 1, "radius": 1.5},
 }
@@ -83,7 +83,7 @@ def error_over_spacing(
     cells = np.asarray(cells_per_radius)
     attributes = cf_attrs("1", "cells across the contact radius, a/s")
     result = xr.Dataset(coords={"cells_per_radius": ("cells_per_radius", cells, attributes)})
-    for name, error in zip(QUANTITIES[problem], np.transpose(errors), strict=True):
+    for name, error in zip(PROBLEM_QUANTITIES[problem], np.transpose(errors), strict=True):
         order = fit_line(np.log(1 / cells), np.log(error)).slope
         words = f"relative error of the {_WORDS[name]}, rms over positions"
         result[f"{name}_error"] = ("cells_per_radius", error, cf_attrs("1", words))
@@ -161,7 +161,7 @@ def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int) -> x
     ratios = generator.uniform(*cells, size=cases)
     centres = generator.uniform(-0.5, 0.5, size=(cases, 2))
     names, orders, rows = [], [], []
-    for problem, quantities in QUANTITIES.items():
+    for problem, quantities in PROBLEM_QUANTITIES.items():
         # The centre is a place, the same on every grid.
         errors = np.array(
             [

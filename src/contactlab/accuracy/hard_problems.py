@@ -66,7 +66,7 @@ def _tiny(generator):
 
 
 def _length_unit(cell):
-    """The same problem with lengths in another unit, and an odd unit of stress."""
+    """Problem with lengths in another unit, and an odd unit of stress."""
 
     def problem(kind, generator):
         height = rough_surface(generator) * (cell / 0.1)

@@ -71,7 +71,9 @@ def rough_surface(generator: np.random.Generator) -> np.ndarray:
 def half_space(
     shape: tuple[int, int], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
 ) -> HalfSpace:
-    """Half-space under this many cells (mm), ``stretch`` times as long along y as along x."""
+    """Half-space under ``shape`` cells of side ``cell`` (mm), ``stretch`` times as long along y as
+    along x.
+    """
     return HalfSpace(shape, (cell * stretch, cell), modulus)
 
 
@@ -107,7 +109,7 @@ def loaded(
 def _load(generator, space, closure, by_force=None):
     """A closure or, in half the cases, about its force: that of a punch as large as the window.
 
-    Any force has a state.
+    Every force has a state of contact.
     """
     by_force = generator.random() < 0.5 if by_force is None else by_force
     if not by_force:
@@ -254,7 +256,7 @@ def _last_bit(kind, generator):
 
 
 def _shaped(make):
-    """A topography from coordinates (y, x) in [-1, 1] across the longer side."""
+    """Kind of problem with heights ``make`` at (y, x), from -1 to 1 along the longer side."""
 
     def problem(kind, generator):
         shape = draw_shape(generator)

@@ -30,11 +30,11 @@ RMS = 0.02  # mm
 REFERENCE_TOLERANCES = (1e-12, 1e-11, 1e-10)
 # Relative error of the fraction in contact, which only names a problem.
 FRACTION_MET = 0.02
-# Relative distance of closures at which the search for a count of nodes ends.
+# Relative difference of closures at which the search for a count of nodes ends.
 CLOSED = 1e-3
 #: Most interpenetrating nodes for direct elimination within seconds.
 ELIMINATED = 4500
-# Hertz's contact and the punch reach this fraction of the way from the centre to the edge.
+# Fraction of the way from the centre to the edge that Hertz's contact and the punch reach.
 REACH = 0.8
 # Closure of the punch relative to its radius; the problem is linear and does not depend on it.
 PUNCH_CLOSURE = 0.01

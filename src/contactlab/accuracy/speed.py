@@ -134,7 +134,8 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
     for row in table:
         row["memory"] = memory.get(row["method"], np.nan)
     result = _labelled(table).assign_attrs(_about_problem(problem))
-    # Errors below every requested tolerance, or below the reference's own, count as alike.
+    # Errors below the tightest requested tolerance, or below the reference's own error, count as
+    # alike.
     asked = min(recipe["tolerances"])
     result.attrs["resolvable_error"] = max(result.attrs["reference_error"], asked)
     for name, error in FRONTS.items():
@@ -144,7 +145,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
 
 
 def _first_runs(problem, recipe):
-    """Row of every way tried, and the ways that gave a state, each run once."""
+    """Rows of all ways, each run once, and the ways that gave a state."""
     dimension = dimension_of_domain(problem.single.state.in_contact, 1.0).dimension
     table, ways = [], []
     for ladder in _ladders(problem, recipe):
@@ -241,7 +242,7 @@ def _as_it_is(state):
 
 def _press_peer(code: PublicCode, control: str, reference: Reference, rtol: float) -> np.ndarray:
     """Pressure of a public code at the reference's closure, or under its force."""
-    # For codes whose tolerance is on forces.
+    # The reference force, for codes whose tolerance is on forces.
     exact = reference.state
     pixel_force = exact.force / np.count_nonzero(exact.in_contact)
     load = Load(**{control: getattr(exact, control)}, pixel_force=pixel_force)
@@ -331,7 +332,7 @@ def _labelled(rows: Sequence[Mapping[str, Any]]) -> xr.Dataset:
 def _about_problem(problem):
     """Attributes: the problem, its reference, and the seconds of one operator application.
 
-    The application is in single precision, as all of ours are but one or two.
+    The application is in single precision, as all but one or two of our solver's are.
     """
     reference, space = problem.single, problem.space
     field = reference.state.pressure.astype(np.float32)

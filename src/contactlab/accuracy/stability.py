@@ -88,7 +88,10 @@ def stability(kinds: Sequence[str] | None = None, draws: int = 25) -> xr.Dataset
     ]
     values = {
         name: np.array(
-            [[[getattr(one, name) for one in problem] for problem in row] for row in judgements],
+            [
+                [[getattr(judgement, name) for judgement in problem] for problem in row]
+                for row in judgements
+            ],
             dtype=_DTYPES.get(name, float),
         )
         for name in _STABILITY

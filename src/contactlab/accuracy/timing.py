@@ -26,8 +26,8 @@ def repeated(
 ) -> list[list[float]]:
     """Seconds of repeated calls, in turn, so that a disturbance of the machine affects all alike.
 
-    Each was made once before, in ``first`` seconds, which is one of its ``runs``. A call that took
-    more than ``longest`` seconds is not made again.
+    Each call was made once before, in ``first`` seconds, which counts as one of its ``runs``. A
+    call that took more than ``longest`` seconds is not made again.
     """
     seconds = [[took] for took in first]
     for _ in range(runs - 1):
@@ -51,7 +51,7 @@ def peak_memory(call: Callable[[], Any]) -> float:
 
 
 def _hand_back():
-    """Give freed memory back, where the C library can: a child would use it unnoticed."""
+    """Return freed memory to the system where the C library can; a child would use it unnoticed."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)

@@ -52,7 +52,7 @@ def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> st
         cells=_cells,
         counted=_counted,
         with_error=_with_error,
-        flagged=lambda one: [" *" if flat else "" for flat in one["no_size_effect"].values],
+        flagged=lambda test: [" *" if flat else "" for flat in test["no_size_effect"].values],
         powers=_powers,
         fractions=_fractions,
         strength_cells=_strength_cells,
@@ -103,7 +103,7 @@ def _powers(test: xr.Dataset, arm: str, hurst: float) -> str:
     steps = np.diff(np.log(test["reduced_pressure"].values))
     slopes = -np.diff(np.log(np.where(compliance > 0, compliance, np.nan))) / steps
     finite = [column[np.isfinite(column)] for column in slopes.T]
-    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in finite)
+    return ", ".join(f"{np.median(column):.2f}" if column.size else "–" for column in finite)
 
 
 def _fractions(test: xr.Dataset) -> str:
@@ -113,17 +113,19 @@ def _fractions(test: xr.Dataset) -> str:
     return "".join(f" | v/b = {float(low):.3g} to {float(high):.3g}" for low, high in pairs)
 
 
-def _strength_cells(one: xr.Dataset) -> str:
+def _strength_cells(of_class: xr.Dataset) -> str:
     """Exponents of one class at one load: at equal v, then at equal v/b."""
 
-    def marked(of_one: xr.Dataset, name: str) -> str:
-        return _with_error(of_one, name) + _SIGNS.get(of_one[f"{name}_verdict"].item(), "")
+    def marked(test: xr.Dataset, name: str) -> str:
+        return _with_error(test, name) + _SIGNS.get(test[f"{name}_verdict"].item(), "")
 
-    cells = [marked(one, "pooled_exponent")]
-    for k in range(one.sizes["fraction"]):
-        of_one = one.isel(fraction=k)
-        rest = (f"{float(of_one[f'{name}_exponent']):+.3f}" for name in ("predicted", "theory"))
-        cells.append("; ".join((marked(of_one, "scaled_strength_exponent"), *rest)))
+    cells = [marked(of_class, "pooled_exponent")]
+    for k in range(of_class.sizes["fraction"]):
+        of_fraction = of_class.isel(fraction=k)
+        rest = (
+            f"{float(of_fraction[f'{name}_exponent']):+.3f}" for name in ("predicted", "theory")
+        )
+        cells.append("; ".join((marked(of_fraction, "scaled_strength_exponent"), *rest)))
     return " | ".join(cells)
 
 
@@ -133,7 +135,7 @@ def _other_exponents(test: xr.Dataset) -> str:
     for name, words in (("area_exponent", "A_r/A_0"), ("separation_exponent", "separation")):
         values, errors, verdicts = (test[f"{name}{end}"] for end in ("", "_error", "_verdict"))
         effects = int((verdicts == "size effect").sum())
-        low, middle, high = (float(one()) for one in (values.min, values.median, values.max))
+        low, middle, high = (float(take()) for take in (values.min, values.median, values.max))
         texts.append(
             f"{words} {low:+.3f} to {high:+.3f} (median {middle:+.3f}, standard error up to "
             f"{float(errors.max()):.3f}; a size effect in {effects} of {verdicts.size})"

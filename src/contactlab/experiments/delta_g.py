@@ -28,9 +28,10 @@ from .units import SPACING
 #: Root mean square height, mm: H does not depend on it.
 RMS = 1.0
 
-#: Least H of the surfaces of the verdicts: those of natural joints are as smooth.
+#: Least H of the surfaces that the verdicts rest on: those of natural joints are as smooth.
 FROM_HURST = 0.5
-#: Largest bias there of at least three estimators, and least fraction of the intervals that hold H.
+#: Largest bias of at least three estimators at the H of the verdicts, and least fraction of the
+#: intervals that hold H.
 TOLERATED, PROMISED = 0.03, 0.9
 
 
@@ -81,7 +82,9 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
 
 
 def _measured(hurst: float, nodes: int, part: float, seed: int) -> tuple[np.ndarray, bool]:
-    """H with its ends and the slope's H (4, estimators) of one surface; whether it rolls off."""
+    """H, the ends of its interval and the H of the slope (4, estimators) of one surface; whether it
+    rolls off.
+    """
     roll_off = part * nodes * SPACING if np.isfinite(part) else None
     surface = self_affine(
         (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off

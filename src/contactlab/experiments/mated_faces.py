@@ -16,7 +16,7 @@ from .units import SPACING
 
 #: Stream of the seeds: faces share no noise with the surfaces of other experiments.
 _STREAM = 5
-#: Points of the integral over the spectrum: for one radian of q v, and fewest in all.
+#: Points of the integral over the spectrum for each radian of q v, and fewest points in all.
 _POINTS, _FEWEST = 32, 4000
 
 

@@ -204,8 +204,8 @@ def differ(first: Exponent, second: Exponent) -> bool:
 def overall(decisions: list[Decision], *, follows: bool) -> str:
     """Verdict on a class over the decisions at all its loads.
 
-    ``follows`` says whether alpha follows the predicted change where H changes; without that
-    nothing supports eq. 6, as a number may be met by chance.
+    ``follows`` says whether alpha follows the predicted change where H changes; where it does not,
+    nothing supports eq. 6, because single numbers may agree by chance.
     """
     refuted = sum(decision.verdict == REFUTED for decision in decisions)
     agreeing = sum(decision.verdict == SUPPORTED for decision in decisions)

@@ -211,8 +211,8 @@ def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
     pressure = (result["reduced_pressure"] * steepest / slope).where(result["of_arm"] == "R")
     pressure = pressure.transpose("surface", "reduced_pressure")
     kappa = result["corrected_share"] / pressure
-    known = pressure.values[np.isfinite(pressure.values)]
-    p = np.geomspace(known.min(), known.max(), _CURVE_POINTS) if known.size else np.empty(0)
+    solved = pressure.values[np.isfinite(pressure.values)]
+    p = np.geomspace(solved.min(), solved.max(), _CURVE_POINTS) if solved.size else np.empty(0)
     low, high = (fudged_persson_area(p, 1.0, 1.0, g) / p for g in _WEAKENED)
     values = {
         "resolved_pressure": pressure.values,
@@ -261,7 +261,7 @@ def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _of(samples: xr.Dataset, **chosen: Any) -> xr.Dataset:
-    """Surfaces of a class."""
+    """Surfaces of a class, chosen by the values of ``of_NAME``."""
     keep = np.ones(samples.sizes["surface"], bool)
     for name, value in chosen.items():
         keep &= samples[f"of_{name}"].values == value
@@ -388,7 +388,7 @@ def _follows(
     for load in range(loads):
         ends = [alphas[arm, j, load] for j in (0, hursts - 1)]
         wanted = [by_area[j, load] for j in (0, hursts - 1)]
-        if not all(np.isfinite(one.error) for one in (*ends, *wanted)):
+        if not all(np.isfinite(exponent.error) for exponent in (*ends, *wanted)):
             return False
         if not differ(*wanted) or differ(*(of[1].less(of[0]) for of in (ends, wanted))):
             return False

@@ -177,7 +177,7 @@ def _windows(heights: np.ndarray, size: int) -> list[np.ndarray]:
 
 
 def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float) -> dict[str, Any]:
-    """Numbers of one surface, those of its states over the loads: means over its windows."""
+    """Numbers of one surface, and of its states over the loads as means over its windows."""
     whole = _surface(task, number)
     windows = [whole] if task.whole is None else _windows(whole, task.size)
     if task.construction:

@@ -1,7 +1,7 @@
 """Jobs of the experiment on the size effect: the surfaces that each of them makes and solves.
 
-Light, because the workflow reads it: a job takes seeds of one arm, one Hurst exponent, one size and
-one short cut-off, as many as last for minutes.
+This module imports little, because the workflow reads it. A job takes seeds of one arm, one Hurst
+exponent, one size and one short cut-off, as many as last for minutes.
 """
 
 import math
@@ -44,7 +44,7 @@ class SizeTask(NamedTuple):
     first: int
     """Number of the first surface."""
     surfaces: int
-    """How many."""
+    """Number of surfaces."""
     whole: int | None = None
     """Nodes per side of the surface that windows of ``size`` are cut from; None without windows."""
     construction: str = ""
@@ -91,8 +91,8 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
                 shortest = 2 if arm == "G" else recipe["cut_off"]
                 for cut_off in stated.get("cut_offs", [shortest]):
                     for construction in stated.get("constructions", [""]):
-                        one = arm, hurst, size, cut_off, construction
-                        tasks += _of_class(*one, surfaces, recipe)
+                        of_class = arm, hurst, size, cut_off, construction
+                        tasks += _of_class(*of_class, surfaces, recipe)
     return sorted(tasks, key=lambda task: -task.nodes)
 
 

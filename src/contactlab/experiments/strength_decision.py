@@ -20,7 +20,7 @@ from .size_decision import (
 )
 
 FLAT, EFFECT, OPEN = "no size effect", "size effect", "undetermined"
-#: Verdicts on both kinds together.
+#: Verdicts on a size effect at equal v and at equal v/b together.
 OF_V, OF_B = "size effect of v, not of b", "size effect of b"
 
 

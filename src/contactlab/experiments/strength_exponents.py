@@ -86,9 +86,9 @@ class _Sample(NamedTuple):
 def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
     """Rates d delta/dv (surface, law, interval, reduced_pressure) between successive displacements.
 
-    They begin with mated faces. Secants, as :func:`laws.strength.dilatancy_angle` takes them: of
-    one joint, whose scatter cancels, and every state serves two of them. States are those of
-    :func:`experiments.size_strength.sliding_states`.
+    The displacements begin with mated faces. Rates are secants, as
+    :func:`laws.strength.dilatancy_angle` takes them: the scatter of one joint cancels, and every
+    state serves two secants. States are those of :func:`experiments.size_strength.sliding_states`.
     """
     delta = states["separation"].transpose("surface", "law", "offset", "reduced_pressure").values
     delta = np.concatenate([np.zeros_like(delta[:, :, :1]), delta], axis=2)
@@ -165,8 +165,8 @@ def equal_fractions(
 ) -> dict[tuple[float, float], dict[float, int]]:
     """Intervals of v that are one fraction of the side, for two sides or more.
 
-    By the ends (v/b) of the interval: its number by side. Sides and offsets are in mm; the offsets
-    include zero and ascend.
+    The numbers of the intervals by side, for each pair of ends (v/b). Sides and offsets are in mm;
+    the offsets include zero and ascend.
     """
     numbers: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
     for side in sides:

@@ -6,7 +6,7 @@ slopes and dimensions do not depend on these values.
 
 #: Side of a cell, mm.
 SPACING = 1.0
-#: MPa.
+#: Contact modulus E*, MPa.
 E_STAR = 1.0
 #: Root mean square height as a fraction of the side, where the surface is loaded.
 RMS_FRACTION = 0.01

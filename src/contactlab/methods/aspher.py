@@ -67,7 +67,7 @@ class Aspher(PublicCode):
 
     @property
     def applications(self) -> int | None:
-        """Applications of its operator on the finest grid, whole or in part."""
+        """Applications of the code's operator on the finest grid, whole or in part."""
         return None if self._result is None else self._result.matvec_count
 
     @property

@@ -10,8 +10,8 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
-# The final check sums up to this many products (10 ms) directly, independently of the FFT. The FFT
-# is always faster: 400 loads on 512 x 512 take 0.5 s directly, 0.015 s by FFT.
+# Most products (10 ms) that the final check sums directly, independently of the FFT. The FFT is
+# always faster: 400 loads on 512 x 512 take 0.5 s directly, 0.015 s by FFT.
 LARGEST_SUM = 3_000_000
 
 

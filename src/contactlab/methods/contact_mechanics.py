@@ -101,7 +101,7 @@ class ContactMechanics(PublicCode):
         )
 
     def count(self, on: bool) -> None:
-        """Begin or end to wrap ``evaluate_disp`` and ``evaluate_force`` of the substrate."""
+        """Begin or end to count calls, by wrapping ``evaluate_disp`` and ``evaluate_force``."""
         self._applications = 0
         for name, evaluate in self._evaluate.items():
 

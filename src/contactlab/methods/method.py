@@ -129,7 +129,7 @@ class Method:
             )
         rtol = self.rtol if rtol is None else rtol
         if self.packages:
-            # Once, and not in every child.
+            # Imported once in the parent, which every child shares.
             for package in self.packages:
                 import_module(package)
             return solve_in_child(self.set_up, composite, space, rtol=rtol, **load)

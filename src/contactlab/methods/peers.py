@@ -88,7 +88,7 @@ class PublicCode:
         raise NotImplementedError
 
     def count(self, on: bool) -> None:
-        """Begin to count applications of the operator, from zero, or end it, as it takes time."""
+        """Begin or end to count applications of the operator; counting takes time."""
 
     @property
     def applications(self) -> int | None:
@@ -175,7 +175,7 @@ def state_of(
 
     ``clearance`` is the opening at first touch, mm. An unknown closure is the mean over the contact
     that is no overlap. Force (N) and hardness (MPa) are the given ones. ``residual`` is measured
-    with our operator; ``iterations`` are not known: 0.
+    with our operator; ``iterations`` are not known and stated as 0.
     """
     cap = np.inf if hardness is None else hardness
     if closure is None:

@@ -13,9 +13,9 @@ from .method import Method
 
 _FOUND: list[Method] = sorted(
     (
-        one
+        method
         for module in modules_of(sys.modules[__package__]).values()
-        for one in getattr(module, "METHODS", ())
+        for method in getattr(module, "METHODS", ())
     ),
     key=lambda method: (method.order, method.name),
 )

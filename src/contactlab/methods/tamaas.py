@@ -62,7 +62,7 @@ class Tamaas(PublicCode):
         return float((displacement - self.height)[pressure > 0].mean())
 
     def count(self, on: bool) -> None:
-        """Begin or end to add a functional to the energy that is zero and counts its gradients."""
+        """Begin or end to count gradients, by a functional that adds zero to the energy."""
         self._counter = _counter(self.tamaas) if on else None
 
     @property

@@ -32,7 +32,7 @@ from ..states.states import hardness_of
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings, solver_settings
 from ..study.documents import read_study
-from ..study.measured import require_files
+from ..study.laboratory_tests import require_files
 from ..study.scan_groups import grouped_notes
 from ..study.sidecar import is_contact_map
 from .scan_words import gap_words, warnings_of_specimen
@@ -219,8 +219,8 @@ def _map_row(scan, contact):
         lines.append(f"the cells within the outline add up to {force} if they hold MPa")
     if contact.sizes["threshold"] > 1:
         shares = ", ".join(
-            f"{percent(part)} above {at:g}"
-            for at, part in zip(
+            f"{percent(part)} above {threshold:g}"
+            for threshold, part in zip(
                 contact["threshold"].values, contact["threshold_area_share"].values, strict=True
             )
         )

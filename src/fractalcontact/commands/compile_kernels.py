@@ -1,4 +1,4 @@
-"""Compile the kernels once, after the installation: else the first jobs of a study all would.
+"""Compile the kernels once after the installation; otherwise each of the first jobs would.
 
 python -m fractalcontact.commands.compile_kernels
 """
@@ -20,7 +20,7 @@ from ..surface.synthesis import self_affine
 
 #: Nodes per side of a window whose solves compile the kernels of small windows.
 SIDE = 200
-#: Nodes per side from which it also uses the parts for light contact.
+#: Fewest nodes per side of a window whose solves also use the code for light contact.
 LARGE_SIDE = 512
 #: Force, N, that one node carries: arrays of one node are contiguous in two orders at once, and
 #: numba compiles kernels of their own for them.

@@ -20,12 +20,12 @@ from ..core.file_names import split_file_name
 from ..core.labels import natural_key, printable
 from ..core.text import percent
 from ..core.units import length_factor
-from ..gridding.measured import Measured
+from ..gridding.ungridded import UngriddedScan
 from ..scan.draft import written
 from ..scan.keys import ScanKeys
 from ..scan.options import FACES, NO_MARK, of_face
 from ..scan.raw import IncompleteSidecar
-from ..scan.read import measure
+from ..scan.read import scan_in_mm
 from ..scan.undeclared import find_marks, number, possible_marks
 from ..study.checks import read_sidecar
 from ..study.documents import read_study
@@ -75,14 +75,14 @@ class Described:
 class Face:
     """One file as it would be read.
 
-    ``options`` are its scan keys, ``measured`` is None if it is refused, ``notes`` stand beside its
+    ``options`` are its scan keys, ``scan`` is None if it is refused, ``notes`` stand beside its
     picture. ``among`` are numbers among the heights that may mark missing cells, where the draft
     names none.
     """
 
     path: Path
     options: dict[str, Any]
-    measured: Measured | None = None
+    scan: UngriddedScan | None = None
     notes: list[str] = field(default_factory=list)
     among: list[float] = field(default_factory=list)
 
@@ -100,7 +100,7 @@ def describe(scan: ScanFiles, *, always: bool = False) -> Described:
     described = Described(scan.name, "draft" if lines else "complete", to_fill=to_fill)
     described.sizes = [size_words(face) for face in shown.values()]
     described.sentences = [note for face in shown.values() for note in face.notes]
-    if not lines and all(face.measured is None for face in shown.values()):
+    if not lines and all(face.scan is None for face in shown.values()):
         described.state = "refused"
     if lines or always:
         described.picture = _beside(scan, ".png")
@@ -126,7 +126,7 @@ def _stated(scan: ScanFiles) -> dict[str, Any]:
 def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[str, Any]]:
     """Lines of the draft for one file, and their values; empty if the sidecar is complete."""
     try:
-        measure(path, options, are_heights=not is_contact_map(options))
+        scan_in_mm(path, options, are_heights=not is_contact_map(options))
     except IncompleteSidecar as error:
         lines = [line.removeprefix("    ") for line in error.draft.split("\n")]
         return lines, plain_value("\n".join(lines), f"draft for {path}")
@@ -153,11 +153,11 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
         shown.notes.append("the file seems to hold no face, but a profile")
         options["kind"] = "face"
     try:
-        shown.measured = measure(path, options, are_heights=False)
+        shown.scan = scan_in_mm(path, options, are_heights=False)
     except InputError as error:
         shown.notes.append(str(error).split("\n")[0])
         return shown
-    if warnings := shown.measured.provenance["warnings"]:
+    if warnings := shown.scan.provenance["warnings"]:
         shown.notes += warnings.split("\n")
     every = _marks(shown)
     marks = [mark for mark, is_outside in every.items() if is_outside]
@@ -167,17 +167,17 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
         shown.among = [mark for mark, is_outside in every.items() if not is_outside]
     if marks and draft.get("missing") == NO_MARK:
         options["missing"] = marks if len(marks) > 1 else marks[0]
-        shown.measured = measure(path, options, are_heights=False)
+        shown.scan = scan_in_mm(path, options, are_heights=False)
     return shown
 
 
 def _marks(face: Face) -> dict[float, bool]:
     """Numbers of the file that may mark missing cells, and whether each lies far outside others."""
-    assert face.measured is not None
-    options, values = face.options, face.measured.values
+    assert face.scan is not None
+    options, values = face.options, face.scan.values
     if is_contact_map(options):
         return {}
-    heights = values if face.measured.layout == "matrix" else values[:, 2]
+    heights = values if face.scan.layout == "matrix" else values[:, 2]
     unit = options.get("unit_z") or options.get("unit") or "mm"
     sign = -1 if options.get("heights") == "down" or options.get("kind") == APERTURE else 1
     factor = sign * length_factor(str(unit), str(face.path))
@@ -203,7 +203,7 @@ def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mappi
            if value is not None and value != drafts["lower"][1].get(key, value)}  # fmt: skip
     for face, described in (("lower", lower), ("upper", upper)):
         block = [f"{key}: {written(value)}" for key, value in own.items()] * (face == "upper")
-        block += _confirmed(described).rstrip("\n").split("\n") if described.measured else []
+        block += _confirmed(described).rstrip("\n").split("\n") if described.scan else []
         text += f"{face}:\n" + "".join(f"  {line}\n" for line in block) if block else ""
     return text
 
@@ -228,18 +228,18 @@ def _with_marks(lines: list[str], face: Face) -> list[str]:
 
 
 def _confirmed(face: Face) -> str:
-    if face.measured is None:
+    if face.scan is None:
         return ""
-    size = face.measured.size
+    size = face.scan.size
     return _CONFIRMED + "".join(f"  {key}: {written(value)}\n" for key, value in size.items())
 
 
 def size_words(face: Face) -> str:
     """Cells or points of a file, its relief in its own numbers, and its missing cells."""
-    if face.measured is None:
+    if face.scan is None:
         return "refused"
-    size, values = face.measured.size, face.measured.values
-    heights = values if face.measured.layout == "matrix" else values[:, 2]
+    size, values = face.scan.size, face.scan.values
+    heights = values if face.scan.layout == "matrix" else values[:, 2]
     missing = percent(float(np.isnan(heights).mean()))
     ny, nx = size.get("shape", (0, 0))
     cells = f"{nx} x {ny} cells" if nx else f"{size['points']} points"
@@ -264,10 +264,10 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
     sizes = []
     for face, block in zip(faces, blocks, strict=True):
         try:
-            face.measured = measure(face.path, face.options)
+            face.scan = scan_in_mm(face.path, face.options)
         except InputError as error:
             return Described(scan.name, "refused", sentences=[str(error).split("\n")[0]])
-        sizes.append(face.measured.size)
+        sizes.append(face.scan.size)
         relief, expected = sizes[-1].get("relief"), block.get("confirmed", {}).get("relief")
         if relief and expected and not 1 / ALIKE <= relief / expected <= ALIKE:
             sentence = (
@@ -294,8 +294,8 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
 
 
 def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
-    known = ScanKeys.model_fields.keys() - {"confirmed", *FACES}
-    return {key: value for key, value in document.items() if key in known}
+    allowed = ScanKeys.model_fields.keys() - {"confirmed", *FACES}
+    return {key: value for key, value in document.items() if key in allowed}
 
 
 def _like(path: Path, scans: Mapping[str, ScanFiles]) -> tuple[dict, ScanFiles]:
@@ -324,8 +324,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
     study = read_study(chosen.study)
-    one = chosen.file or chosen.like
-    folder = one.parent if one else Path(chosen.folder or study.get("scans") or "scans")
+    path = chosen.file or chosen.like
+    folder = path.parent if path else Path(chosen.folder or study.get("scans") or "scans")
     return _run(folder, chosen)
 
 

@@ -26,24 +26,24 @@ def draw_faces(faces: Sequence[Any], path: Path) -> None:
         2 * len(faces), 2, width_ratios=(3, 2), height_ratios=(4, 1.6) * len(faces)
     )
     for n, face in enumerate(faces):
-        beside, histogram = figure.add_subplot(grid[2 * n, 0]), figure.add_subplot(grid[2 * n, 1])
+        relief, histogram = figure.add_subplot(grid[2 * n, 0]), figure.add_subplot(grid[2 * n, 1])
         _write_lines(figure.add_subplot(grid[2 * n + 1, :]), face)
-        if face.measured is None:
-            beside.set_axis_off()
+        if face.scan is None:
+            relief.set_axis_off()
             histogram.set_axis_off()
             continue
         of_map = face.options.get("kind") == APERTURE
         label = "negative of the aperture (mm)" if of_map else "height (mm)"
-        z = _draw_relief(figure, beside, face, label)
+        z = _draw_relief(figure, relief, face, label)
         draw_histogram(histogram, z, label)
     figure.savefig(path, dpi=90)
 
 
 def _draw_relief(figure, axes, face, label):
     """The relief over x and y, missing cells in red; its heights in mm."""
-    measured = face.measured
-    if measured.layout == "matrix":
-        z, (dx, dy) = measured.values, measured.spacing
+    scan = face.scan
+    if scan.layout == "matrix":
+        z, (dx, dy) = scan.values, scan.spacing
         ny, nx = z.shape
         step = max(1, -(-max(z.shape) // _MAX_CELLS))
         shown = np.ma.masked_invalid(z[::step, ::step])
@@ -51,12 +51,12 @@ def _draw_relief(figure, axes, face, label):
         image = axes.imshow(shown, origin="lower", extent=extent, cmap=colours(), aspect="equal")
         title = f"{nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm"
     else:
-        points = measured.values[:: max(1, len(measured.values) // _MAX_POINTS)]
+        points = scan.values[:: max(1, len(scan.values) // _MAX_POINTS)]
         x, y, z = points.T
         image = axes.scatter(x, y, c=z, s=2, cmap=colours(), linewidths=0)
         axes.set_aspect("equal")
-        title = f"{len(measured.values)} points"
-        z = measured.values[:, 2]
+        title = f"{len(scan.values)} points"
+        z = scan.values[:, 2]
     present = z[np.isfinite(z)]
     if present.size:  # spikes would hide the relief
         image.set_clim(*np.percentile(present, [0.5, 99.5]))

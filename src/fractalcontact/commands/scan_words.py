@@ -12,11 +12,11 @@ from ..core.text import length_words
 from ..roughness.quality_words import overlap_words
 from ..scan.draft import OPENING
 
-#: Outliers this many reliefs away are hardly spikes of an instrument.
+#: Least distance of outliers, in reliefs, that are hardly spikes of an instrument.
 FAR_OUT = 3.0
-#: From this correlation on two faces lie as they did in the rock.
+#: Least correlation of two faces that lie as they did in the rock.
 REGISTERED = 0.9
-#: Registration may move such faces by this many of its standard errors.
+#: Largest motion by registration of faces that lie as they did in the rock, in its standard errors.
 MAX_ERRORS = 3.0
 _NO_FACE = re.compile(rf"{OPENING.pattern}|(?<![a-z])depth(?![a-z])", re.IGNORECASE)
 

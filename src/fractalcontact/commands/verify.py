@@ -1,4 +1,4 @@
-"""Compare every file of a study with the checksum that the job which made it left.
+"""Comparison of every file of a study with the checksum that its job recorded.
 
 python -m fractalcontact.commands.verify STUDY_FILE_OR_RESULTS_FOLDER
 """

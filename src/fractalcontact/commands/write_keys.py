@@ -13,7 +13,7 @@ from ..core.atomic import atomic_write
 from ..core.keys import schema_of
 from ..report.published import PLACES, published
 from ..scan.keys import ScanKeys
-from ..study import keys, measured_keys
+from ..study import keys, laboratory_keys
 
 #: Sections of one key of a study, whose keys stand in its table as ``solver.rtol``.
 _INSIDE = {"solver": keys.SolverKeys, "grain": keys.GrainKeys}
@@ -67,9 +67,9 @@ def tables() -> dict[str, dict[str, str]]:
     }
 
 
-def written(document: str, made: dict[str, str]) -> str:
+def written(document: str, tables: dict[str, str]) -> str:
     """Text of a document with its tables between their marks."""
-    for name, table in made.items():
+    for name, table in tables.items():
         start, end = (mark.format(name=name) for mark in _MARKS)
         before, _, rest = document.partition(start)
         _, mark, after = rest.partition(end)
@@ -83,8 +83,8 @@ def main() -> int:
     """Write all files."""
     for path, text in schemas().items():
         _write(path, text)
-    for path, made in tables().items():
-        _write(path, written(Path(path).read_text(encoding="utf-8"), made))
+    for path, table in tables().items():
+        _write(path, written(Path(path).read_text(encoding="utf-8"), table))
     return 0
 
 
@@ -103,7 +103,7 @@ def _rows(section: Any, above: str = "") -> Iterator[tuple[str, str, str]]:
 
 
 def _unsaid(field: Any, node: dict[str, Any]) -> str:
-    """What holds for a key that is left out, by its default."""
+    """Value that holds for a key that is left out, by its default."""
     if field.is_required():
         return "required"
     value = node.get("default", field.default)
@@ -133,8 +133,8 @@ def _published_rows() -> Iterator[tuple[str, ...]]:
 
 def _test_rows() -> Iterator[tuple[str, str, str]]:
     """Keys of laboratory tests, and the kinds that have each."""
-    kinds = {kind: schema_of(of, with_texts=True) for kind, of in measured_keys.KINDS.items()}
-    for name in dict.fromkeys(name for one in kinds.values() for name in one["properties"]):
+    kinds = {kind: schema_of(of, with_texts=True) for kind, of in laboratory_keys.KINDS.items()}
+    for name in dict.fromkeys(name for schema in kinds.values() for name in schema["properties"]):
         having = [kind for kind, schema in kinds.items() if name in schema["properties"]]
         nodes = [kinds[kind]["properties"][name] for kind in having]
         text = next(node["markdownDescription"] for node in nodes if "markdownDescription" in node)

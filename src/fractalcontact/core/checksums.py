@@ -41,9 +41,9 @@ def sha256(path: Path | str) -> str:
 class Digests:
     """SHA-256 of files, not computed again while a file's identity, size and times are the same.
 
-    No program can set the time of the last change of status. So moving, copying or unpacking an
-    older file over another is noticed, as git does it. The cache is the file that stores them;
-    damaged or missing, it is made anew.
+    No program can set the time of the last change of status, so that moving, copying or unpacking
+    an older file over another is noticed, as git notices it. The file ``cache`` stores the digests;
+    if it is damaged or missing, it is made anew.
     """
 
     def __init__(self, cache: Path | str = KNOWN):
@@ -143,21 +143,21 @@ def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checke
         lines = _lines(path)
         if not lines:
             checked.damaged.extend([path, *_recorded_in(results, path)])
-        for name, known in lines.items():
+        for name, recorded in lines.items():
             file = results / name
             if not file.is_file():
                 checked.missing.append(file)
             # The checksum is computed in full before the file counts as damaged.
-            elif known == digest(file) or known == sha256(file):
+            elif recorded == digest(file) or recorded == sha256(file):
                 checked.intact.append(file)
             else:
                 checked.damaged.append(file)
-    known = {*checked.intact, *checked.damaged}
-    made = (path for path in results.rglob("*") if path.suffix in _READ and path.is_file())
+    with_record = {*checked.intact, *checked.damaged}
+    on_disk = (path for path in results.rglob("*") if path.suffix in _READ and path.is_file())
     checked.unrecorded.extend(
         path
-        for path in sorted(made)
-        if path not in known and not {ASIDE, FOLDER} & set(path.relative_to(results).parts)
+        for path in sorted(on_disk)
+        if path not in with_record and not {ASIDE, FOLDER} & set(path.relative_to(results).parts)
     )
     return checked
 
@@ -186,13 +186,13 @@ def lines_of(results: Path | str) -> list[str]:
     results = Path(results)
     lines: list[str] = []
     for path in (results / FOLDER).rglob(f"*{ENDING}"):
-        found = _lines(path).items()
-        lines += [f"{digest}  {name}\n" for name, digest in found if (results / name).is_file()]
+        recorded = _lines(path).items()
+        lines += [f"{digest}  {name}\n" for name, digest in recorded if (results / name).is_file()]
     return sorted(lines, key=lambda line: line[66:])
 
 
 def record_of(results: Path | str, file: Path | str) -> Path:
-    """File with the checksums of a result and of those that differ from it in their ending."""
+    """File with the checksums of a result and of those that differ only in their ending."""
     results, file = Path(results), Path(file)
     name = file.relative_to(results)
     return results / FOLDER / name.with_name(name.stem + ENDING)
@@ -212,11 +212,11 @@ def _lines(path):
         text = path.read_text(encoding="utf-8")
     except (FileNotFoundError, UnicodeDecodeError):
         return {}
-    found = {}
+    recorded = {}
     for line in text.splitlines(keepends=True):
         digest, _, name = line.partition("  ")
         whole = line.endswith("\n") and len(digest) == 64 and name.strip()
         if not whole or Path(name).is_absolute() or ".." in Path(name).parts:
             return {}
-        found[name.rstrip("\n")] = digest
-    return found
+        recorded[name.rstrip("\n")] = digest
+    return recorded

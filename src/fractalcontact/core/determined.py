@@ -48,7 +48,7 @@ def determined(
     width = high - low
     size = max(abs(low), abs(high))
     if width <= NO_WIDTH * max(size, span):
-        return any(abs(value - known) <= NO_WIDTH for known in exact)
+        return any(abs(value - number) <= NO_WIDTH for number in exact)
     if width <= span:
         return True
     if low * high > 0:

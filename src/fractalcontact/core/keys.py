@@ -212,10 +212,10 @@ def shortened(text: object) -> str:
     return text if len(text) <= _MAX_QUOTE else f"{text[:_MAX_QUOTE]}..."
 
 
-def nearest(word: object, known: Iterable) -> str:
+def nearest(word: object, words: Iterable) -> str:
     """Hint at the nearest known word, or at all words if none is near."""
-    near = difflib.get_close_matches(str(word), [str(k) for k in known], n=1)
-    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, known))}"
+    near = difflib.get_close_matches(str(word), [str(k) for k in words], n=1)
+    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, words))}"
 
 
 class _Schema(GenerateJsonSchema):
@@ -249,7 +249,7 @@ def _mapping_words(form: Mapping) -> str:
 
 
 class _WithTexts(_Schema):
-    """The same with the texts below the fields of the classes."""
+    """JSON schema of :class:`_Schema` with the texts below the fields of the classes."""
 
     def model_schema(self, schema: Any) -> Any:
         document = super().model_schema(schema)
@@ -293,8 +293,8 @@ _RANKS = ("other", "value_error", "missing", "extra_forbidden")
 def _faults(section: type[Section], document: Mapping, errors: list, above: str) -> list[str]:
     """Sentences on the faults of a document, in the order of their keys.
 
-    A value that may have several forms gives an error for each of them; the one farthest inside
-    says most.
+    A value that may have several forms gives an error for each form; the error farthest inside says
+    most.
     """
     groups: dict[tuple, list] = {}
     for error in errors:
@@ -340,8 +340,8 @@ def _sentence(
     """Sentence on one error: the key, what stands there, the expected value, the nearest key."""
     name = ".".join(filter(None, (above, *map(str, path))))
     if error["type"] == "extra_forbidden":
-        known = _nodes(section, path[:-1])[-1].get("properties", {})
-        return f"unknown key '{shortened(name)}'{nearest(path[-1], known)}"
+        allowed = _nodes(section, path[:-1])[-1].get("properties", {})
+        return f"unknown key '{shortened(name)}'{nearest(path[-1], allowed)}"
     words = next((node["description"] for node in reversed(_nodes(section, path)[1:])
                   if "description" in node), "")  # fmt: skip
     if error["type"] == "missing":

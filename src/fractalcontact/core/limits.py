@@ -79,3 +79,6 @@ CONFIDENCE = 0.95
 #: (1969) 279) and most tests 0.95. Windows that hold few hills show lower ones (Pastewka et al.,
 #: Phys. Rev. E 87 (2013) 062809).
 CONDUCTANCE_EXPONENTS = (0.95, 1.0)
+
+#: Largest relative difference between two pressures that are equal but for rounding.
+PRESSURE_ROUNDING = 1e-9

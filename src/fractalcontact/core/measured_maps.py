@@ -29,8 +29,8 @@ def measured_maps(atlas: xr.DataTree) -> dict[str, xr.Dataset]:
         return {}
     maps = {name: node.to_dataset() for name, node in atlas["contact_maps"].children.items()}
     places = {
-        name: (int(one["series_number"]), int(one["number_in_series"]))
-        for name, one in maps.items()
+        name: (int(contact["series_number"]), int(contact["number_in_series"]))
+        for name, contact in maps.items()
     }
     return {name: maps[name] for name in sorted(maps, key=lambda name: places[name])}
 
@@ -40,11 +40,11 @@ def map_table(maps: Mapping[str, xr.Dataset]) -> pd.DataFrame:
     rows = [
         {
             "map": name,
-            "series": one.attrs["series"],
-            "label": one.attrs["label"],
-            "threshold": one.attrs["threshold"],
-            **{column: one[variable].item() for column, variable in _COLUMNS.items()},
+            "series": contact.attrs["series"],
+            "label": contact.attrs["label"],
+            "threshold": contact.attrs["threshold"],
+            **{column: contact[variable].item() for column, variable in _COLUMNS.items()},
         }
-        for name, one in maps.items()
+        for name, contact in maps.items()
     ]
     return pd.DataFrame(rows)

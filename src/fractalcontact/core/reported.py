@@ -1,7 +1,7 @@
 """Contact states of a specimen that are published: direction, offset, grid and loads.
 
-The stage that solves them chooses them once and stores them with its closure curves. Figures,
-pages, statements and comparisons read them there.
+The stage that solves the states chooses the published ones once and stores their place with its
+closure curves. Figures, pages, statements and comparisons read it there.
 """
 
 from collections.abc import Mapping, Sequence
@@ -132,8 +132,8 @@ def states_at(
 ) -> _States:
     """States at a direction, the nearest offset (mm) and a resolution, of those a stage is over."""
     labels = dict.fromkeys(_DIRECTIONS, direction) | {"resolution": resolution}
-    known = {dim: at for dim, at in labels.items() if at is not None and dim in stage.dims}
-    stage = stage.sel(known) if known else stage
+    place = {dim: label for dim, label in labels.items() if label is not None and dim in stage.dims}
+    stage = stage.sel(place) if place else stage
     if offset is None or "offset" not in stage.dims:
         return stage
     return stage.sel(offset=offset, method="nearest")

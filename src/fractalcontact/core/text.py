@@ -196,8 +196,8 @@ def with_error(
     half = (high - low) / 2
     if not half > _NO_WIDTH * max(abs(value), 1e-300) or not math.isfinite(half):
         # A slope of 0 is 1e-16 by rounding.
-        known = plain(value, limits=_PLAIN) if decimals is None else number(value, decimals)
-        words = f"{known}, error not known"
+        shown = plain(value, limits=_PLAIN) if decimals is None else number(value, decimals)
+        words = f"{shown}, error not known"
     else:
         # The error has two digits, and two decimals if it is of the order of one.
         digits = max(1 - math.floor(math.log10(half)), 2 if half < 10 else 0)
@@ -211,7 +211,7 @@ def with_error(
 
 
 def loads_of(some: int, total: int) -> str:
-    """Loads at which something is so, in words: "no load", "3 of 7 loads", "every load"."""
+    """Number of loads that meet a condition, in words: "no load", "3 of 7 loads", "every load"."""
     if some in (0, total):
         return "every load" if some else "no load"
     return f"{some} of {total} loads"

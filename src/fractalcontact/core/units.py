@@ -152,7 +152,7 @@ def length_unit(text: str) -> str | None:
 
 
 def _with_known_length(text: str, wanted: str) -> str:
-    """Quantity with its unit as the library names it, if that is one word and a length.
+    """Quantity whose unit, if it is one word and a length, has the name of the library of units.
 
     InputError if only the library of units takes its unit for a length.
     """

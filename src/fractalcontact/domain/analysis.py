@@ -111,7 +111,8 @@ def analyse_domains(
     }
     n_direction, n_offset, n_load, *_ = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
-    # The octaves of the finest domain; a coarser one has fewer nodes and no clusters in the last.
+    # Number of octaves of the finest domain; a coarser domain has fewer nodes and no clusters in
+    # the last octaves.
     n_octaves = int(np.prod(windows[factors[0]])).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
     missing = _missing_values(

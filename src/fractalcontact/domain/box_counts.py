@@ -125,7 +125,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     sizes = _checked_sizes(sizes)
     max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MAX_CELLS)
     extent = cropped(_checked_domain(domain))
-    counts = np.ones(sizes.size, np.int64)  # by a box as large as the extent
+    counts = np.ones(sizes.size, np.int64)  # one box as large as the extent covers it
     smaller = sizes < max(extent.shape)
     whole = smaller & (sizes == np.round(sizes))
     counts[whole] = minimal_cover(extent, sizes[whole].astype(np.int64))

@@ -251,13 +251,13 @@ class _Cover:
     """Boxes of the minimal cover at each size."""
 
     sizes: np.ndarray
-    """(k,), cells."""
+    """Sides of the boxes (k,), cells."""
     r: np.ndarray
-    """(k,), mm."""
+    """Sides of the boxes (k,), mm."""
     count: np.ndarray
-    """(k,)"""
+    """Numbers of boxes (k,)."""
     used: np.ndarray
-    """(k,) bool: between the cut-offs, and within the range asked for."""
+    """Sizes (k,) bool between the cut-offs and within the requested range."""
 
 
 def _used_sizes(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:

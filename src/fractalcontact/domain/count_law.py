@@ -40,14 +40,14 @@ _FINE = np.linspace(-0.02, 0.02, 41)
 #: (A filled square has 2, a square turned by 45 degrees 4.)
 MAX_OUTLINE = 4.0
 
-#: Sets of less than this dimension have no outline: a line of the plane misses them.
+#: Least dimension of a set with an outline: a line of the plane misses sets of less.
 MIN_WITH_OUTLINE = 1.0
 
 #: Least ratio by which a further term of the outline must lower the misfit.
 TERM_GAIN = 1.5
 
-#: Cells count as whole (c = 0) where their law fits better by this ratio than that of centres, and
-#: to this misfit: without an outline (log-periodic sets wave by 2 %), and with an outline.
+#: Least ratio of misfits by which the law of whole cells (c = 0) must fit better than that of
+#: centres, and its largest misfit without an outline (log-periodic sets wave by 2 %) and with one.
 WHOLE_GAIN = 1.6
 WHOLE_MISFIT = 0.026
 WHOLE_MISFIT_OUTLINE = 0.0015
@@ -57,7 +57,7 @@ WHOLE_MISFIT_OUTLINE = 0.0015
 SMALLEST_SEPARATING = 3
 SMALLEST = 4
 
-#: What a node can stand for: all of its cell, or its centre.
+#: Area that a node can stand for: all of its cell, or its centre.
 _WHOLE, _CENTRE = 0, 1
 
 
@@ -65,15 +65,15 @@ class LawTerms(NamedTuple):
     """Terms of a count law, all lengths in one unit, for its curve."""
 
     amplitude: float
-    """A, boxes as large as the extent."""
+    """Factor A: boxes as large as the extent."""
     outline: float
-    """b_1"""
+    """Factor b_1 of the outline."""
     outline_square: float
-    """b_2"""
+    """Factor b_2 of the square of the outline's term."""
     node_width: float
-    """c"""
+    """Width c that a node stands for."""
     extent: float
-    """L"""
+    """Extent L of the domain."""
 
 
 NO_TERMS = LawTerms(*(np.nan,) * 5)
@@ -156,7 +156,7 @@ def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -
 
 
 def law_terms(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> LawTerms:
-    """Terms, in cells, of a law from :func:`best_law` and of what it was fitted to."""
+    """Terms, in cells, of a law of :func:`best_law`, fitted to its sizes and counts."""
     sizes, count = _checked(sizes, count)
     rho = (sizes - law.c) / side
     powers = rho[:, np.newaxis] ** (2 - law.dimension + np.arange(law.outline + 1))
@@ -216,10 +216,10 @@ def _misfits(rho, areas, side, terms, dimensions):
         if possible:
             total = 0.0
             for k in range(rho.size):
-                found = -1.0
+                miss = -1.0
                 for i in range(terms):
-                    found += columns[i, k] * a[i]
-                total += found**2
+                    miss += columns[i, k] * a[i]
+                total += miss**2
             misfits[d] = np.sqrt(total / rho.size)
     return misfits
 

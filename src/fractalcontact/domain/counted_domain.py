@@ -16,7 +16,7 @@ from .correlation import pair_counts, pair_distances, pairs_slope
 from .mean_law import FoundLaw, block_error, find_law
 
 #: Quantities of which a domain is compared with its null models, in words.
-QUANTITIES = {
+DOMAIN_QUANTITIES = {
     "delta_sigma": "box-counting dimension Delta_sigma",
     "correlation_dimension": "correlation dimension of the nodes in contact",
     "clusters": "contact clusters",
@@ -38,7 +38,7 @@ class CountedDomain:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Values of :data:`QUANTITIES` by name."""
+        """Values of :data:`DOMAIN_QUANTITIES` by name."""
         slope = np.nan
         if self.nodes.any() and self.counts_pairs:
             pairs, lags = self.pairs
@@ -107,10 +107,10 @@ def _pairs_error(domain, other):
     if not domain.counts_pairs:
         return np.nan
     lags = domain.pairs[1]
-    pairs = [one.pairs[0][:, 0] for one in (domain, other)]
+    pairs = [counted.pairs[0][:, 0] for counted in (domain, other)]
 
-    def without(one, part):
-        return pairs_slope(domain.distances, one.sum(axis=1) - one[:, part], lags)
+    def without(counts, part):
+        return pairs_slope(domain.distances, counts.sum(axis=1) - counts[:, part], lags)
 
-    occupied = np.flatnonzero(np.any([one.any(axis=0) for one in pairs], axis=0))
+    occupied = np.flatnonzero(np.any([counts.any(axis=0) for counts in pairs], axis=0))
     return jackknife_error([without(pairs[0], i) - without(pairs[1], i) for i in occupied])

@@ -7,7 +7,8 @@ import numpy as np
 
 from .box_counts import boxes_along
 
-#: Box sizes with all but this fraction of the nodes alone, or of the boxes occupied, are saturated.
+#: Largest fraction of the nodes not alone in a box, or of the boxes not occupied, at saturated box
+#: sizes.
 SATURATED = 0.02
 
 

@@ -10,7 +10,7 @@ from ..core.limits import NEARLY
 from ..core.verdicts import BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT, LIKE_RANDOM, UNDETERMINED
 from .slope_curves import NOT_COMPARED, Departure
 
-#: Every departure there is.
+#: All departures.
 DEPARTURES = (BEYOND_BOTH, BEYOND_RANDOM, LIKE_RANDOM, LIKE_CUT, UNDETERMINED)
 
 

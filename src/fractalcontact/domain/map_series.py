@@ -54,8 +54,8 @@ def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
 def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
     """Names of the maps of each series, then of the maps alone.
 
-    Those of a series are in the order of their pressure, those of unknown pressure last; maps
-    without pressures and series are in the order of their names, numbers as numbers.
+    Maps of a series are in the order of their pressure, maps of unknown pressure last; maps without
+    pressures and series are in the order of their names, numbers as numbers.
     """
     members: dict[str, list[str]] = {}
     for name in sorted(maps, key=natural_key):

@@ -33,9 +33,9 @@ class MeanCounts(NamedTuple):
     """Mean box counts of a domain over all grid origins."""
 
     sizes: np.ndarray
-    """(k,) int64, cells."""
+    """Sides of the boxes (k,) int64, cells."""
     counts: np.ndarray
-    """(k,)"""
+    """Mean numbers of boxes (k,)."""
 
 
 class FittedLaw(NamedTuple):
@@ -44,9 +44,9 @@ class FittedLaw(NamedTuple):
     law: Law
     ends: tuple[float, float]
     sizes: np.ndarray
-    """(k,), cells."""
+    """Sides of the boxes fitted (k,), cells."""
     terms: LawTerms
-    """In cells."""
+    """Terms of the law, in cells."""
 
 
 NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
@@ -55,7 +55,7 @@ NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
 def mean_sizes(shape: tuple[int, ...]) -> np.ndarray:
     """Box sides in cells at which mean counts are taken: whole ones to `LARGEST_BOX` of an extent.
 
-    Those of a domain's extent are the first of those of its window.
+    The sizes for a domain's extent are the first of the sizes for its window.
     """
     return whole_sizes(LARGEST_BOX * max(shape))
 
@@ -128,9 +128,9 @@ class FoundLaw(NamedTuple):
 
     law: Law
     sizes: np.ndarray
-    """(k,) int64, cells: those it was fitted to."""
+    """Sides of the boxes that it was fitted to, (k,) int64, cells."""
     separating: np.ndarray
-    """(m,) int64, cells: those by which its form was chosen."""
+    """Sides of the boxes by which its form was chosen, (m,) int64, cells."""
     side: float
     """Extent of the domain, cells."""
 

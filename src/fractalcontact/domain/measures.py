@@ -20,7 +20,7 @@ _COMPARED_ORDERS = (0.0, 4.0)
 def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     """Measures of the map states, :func:`states.states.map_states`, spacing in mm.
 
-    Those of :func:`measures_of_states` with the scalars ``direction``, ``offset`` and
+    Variables of :func:`measures_of_states` with the scalars ``direction``, ``offset`` and
     ``resolution``, and over load the exponents of :data:`domain.isotropy.INTERVALS`.
     """
     factor = int(states["resolution"])

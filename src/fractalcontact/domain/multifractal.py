@@ -26,7 +26,7 @@ PLACES = 16
 
 #: Orders q of the generalised dimensions.
 ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
-#: Powers of whole orders below this are computed one from the other.
+#: Size of whole orders below which powers are computed one from the other.
 _MAX_WHOLE = 64
 #: Fewest nodes with a D_q: each is then a tenth of the mass. Gliding boxes meet nodes near a rim
 #: less often: a single node in a corner would have 1.8, and the jackknife would not show it.
@@ -70,8 +70,8 @@ def gliding_moments(
         for k, size in enumerate(sizes.astype(int)):
             lowest = [np.arange(0, n - size + 1, max(1, size // PLACES)) for n in mass.shape]
             parts = [
-                (2 * at + size) * BLOCKS // (2 * n)
-                for at, n in zip(lowest, mass.shape, strict=True)
+                (2 * start + size) * BLOCKS // (2 * n)
+                for start, n in zip(lowest, mass.shape, strict=True)
             ]
             _glide(mass.shape[1], filled, size, *lowest, *parts, q, moments[k])
             places[k] = np.outer(*(np.bincount(part, minlength=BLOCKS) for part in parts)).ravel()

@@ -20,7 +20,7 @@ from ..core.per_curve import stacked
 from ..core.ranges import in_cells
 from ..core.reported import states_at
 from .box_dimension import dimension_of_domain
-from .counted_domain import QUANTITIES, CountedDomain, errors_of
+from .counted_domain import DOMAIN_QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
 from .mean_law import mean_sizes
 from .ordinary_dimension import dyadic_sizes
@@ -80,7 +80,7 @@ _SIDE = "box side r of the largest departure of local slopes from those of"
 _TABLE: dict[str, tuple] = {
     **{
         of: row
-        for name, words in QUANTITIES.items()
+        for name, words in DOMAIN_QUANTITIES.items()
         for of, row in _rows(
             name, words, [of for of, names in _COMPARED.items() if name in names]
         ).items()
@@ -134,7 +134,7 @@ def null_models(
     Returns
     -------
     xr.Dataset
-        Over ``normal_force`` (without coordinate): ``_cut`` of each of :data:`QUANTITIES`;
+        Over ``normal_force`` (without coordinate): ``_cut`` of each of :data:`DOMAIN_QUANTITIES`;
         ``_random``, ``_random_low`` and ``_random_high`` of Delta_sigma and of the clusters;
         ``_cut_difference`` with its ends of both dimensions; the counts of the null models over the
         box sides ``null_side`` and ``null_mean_side`` (mm). The ``local_slope`` of
@@ -221,7 +221,7 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
     box, nodes = ours.box, int(np.count_nonzero(domain))
     law = ours.law if box.estimator == "mean" else None
     bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, **how)
-    of_cut = dict.fromkeys(QUANTITIES, np.nan)
+    of_cut = dict.fromkeys(DOMAIN_QUANTITIES, np.nan)
     beyond_cut = dict.fromkeys(_COMPARED["_cut_difference"], NO_ESTIMATE)
     count = np.full(dyadic_sizes(domain.shape).size, np.nan)
     highest_nodes = None

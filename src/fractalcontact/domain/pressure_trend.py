@@ -28,7 +28,7 @@ class Trend(NamedTuple):
 
     @property
     def beyond_random(self) -> str:
-        """Verdict on a trend other than that of as many random cells."""
+        """Verdict on the trend less that of as many random cells."""
         slope = self.departure.slope
         if not np.isfinite(slope.low):
             return UNDETERMINED

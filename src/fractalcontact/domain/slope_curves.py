@@ -42,7 +42,8 @@ class Departure(NamedTuple):
     """Departure of a curve of local slopes from that of a null model.
 
     The probability is of the departure that is largest in units of its scatter. Where the scatter
-    is small a difference of 0.002 is significant: the size is the largest of those that are.
+    is small a difference of 0.002 is significant; ``size`` is the largest of the significant
+    differences.
     """
 
     p: float
@@ -50,7 +51,7 @@ class Departure(NamedTuple):
     place: int
     """Index of the local slope that departs by most, of those that depart significantly."""
     size: float
-    """By how much that local slope departs."""
+    """Departure of that local slope."""
 
     def columns(self, null: str, sides: np.ndarray) -> dict[str, float]:
         """Columns of the stage ``domains`` for a null model: probability, and box side, mm."""

@@ -18,7 +18,7 @@ _CURVES = {
     "local_slope_random_difference": "local slope less that expected of as many random nodes",
     "local_slope_cut_difference": "local slope less that of the bearing-area cut",
 }
-#: Under every load, beside null models: dimensions, unit, long name.
+#: Local slopes under every load, beside null models: dimensions, unit, long name.
 NULL_SLOPES = {
     **{name: (("normal_force", "null_octave"), "1", words) for name, words in _CURVES.items()},
     "delta_sigma_cut_difference": (

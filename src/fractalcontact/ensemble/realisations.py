@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset, titled
 from ..core.labels import REALISATIONS, TWINS, cf_attrs
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import corrected_scaling
@@ -24,10 +24,9 @@ from ..domain.random_nodes import expected_dimension
 from ..laws.closure import interface_states
 from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import of_usable_sizes, size_exponent
-from ..size_effect.size_law import QUANTITIES
+from ..size_effect.size_law import WINDOW_QUANTITIES
 from ..size_effect.windows import solved_windows
 from ..states.loading import JointLoading
-from ..states.separation import ROUNDING
 from ..states.states import MAP_GAP, forces_of, with_pressure
 from ..states.sweep import contact_states
 from ..surface.embedded import embedded_surface
@@ -40,8 +39,8 @@ from .twins import twin_loadings
 #: Sub-windows along a side of the window, and how many of each size are solved.
 PARTS, MAX_WINDOWS = (1, 2, 4), 4
 
-#: Of every realisation under every load, named as in the stages of the named specimen: unit, long
-#: name.
+#: Numbers of every realisation under every load, named as in the stages of the specimen that the
+#: ensemble stands for: unit, long name.
 STATES = {
     "nodes": ("1", "nodes in contact"),
     "interface_closure": ("mm", "interface closure w_int = w - w_b, from first touch"),
@@ -57,7 +56,7 @@ STATES = {
     ),
     "difference": ("1", "Delta_sigma from area less that from box counting"),
 }
-#: Of every realisation under the reference load: unit, long name.
+#: Numbers of every realisation under the reference load: unit, long name.
 ISOTROPY = {
     "interval_difference": (
         "1",
@@ -77,7 +76,7 @@ _EQ6 = {
 #: of the sub-windows, fewest nodes of each, what it is.
 EXPONENTS = {
     exponent: ({"area_fraction": "corrected_area_share"}.get(name, name), fewest, words)
-    for name, (exponent, fewest, words) in QUANTITIES.items()
+    for name, (exponent, fewest, words) in WINDOW_QUANTITIES.items()
 } | {
     "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch")
 }
@@ -144,7 +143,7 @@ def ensemble(
 def _light(settings: EnsembleSettings, area: float) -> EnsembleSettings:
     """Settings with the loads of the ensemble alone, as forces, sub-windows under one."""
     forces = forces_of(settings.loads, area)
-    seated = forces[forces >= settings.seating_pressure * area * (1 - ROUNDING)]
+    seated = forces[forces >= settings.seating_pressure * area * (1 - PRESSURE_ROUNDING)]
     wanted = {*seated[:1], *forces_of(settings.drawn_loads, area), forces[-1]}
     return replace(
         settings,
@@ -156,7 +155,7 @@ def _light(settings: EnsembleSettings, area: float) -> EnsembleSettings:
 def _add_seated_closure(result: xr.Dataset, seat: float) -> None:
     """Closure from the first load, N, at or above ``seat`` that resolves every realisation."""
     force = result["normal_force"]
-    heavy = force >= seat * (1 - ROUNDING)
+    heavy = force >= seat * (1 - PRESSURE_ROUNDING)
     resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation") & heavy
     common = force.where(resolved).min()
     closing = result["interface_closure"]
@@ -186,7 +185,7 @@ def _members(
 
 
 def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:
-    """Specimen made from a recipe in the same way as the named one from its scan."""
+    """Specimen made from a recipe, cleaned and cut as the study's own specimen is."""
     spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
     lower = specimens["lower"].copy(data=embedded_surface(recipe)).assign_attrs(spacing)
     name = f"{specimens.attrs['name']}, realisation of seed {recipe['seed']}"

@@ -1,7 +1,8 @@
 """Sliding of an ensemble: rigid dilatancy in all directions, and contact at all offsets.
 
-What the paper says of sliding it says of two joints. One joint shows it by chance: the highest
-points of a face decide, and there are few of them. Realisations show what is common to a kind.
+The paper states its results on sliding for two joints. A single joint may show them by chance,
+because the few highest points of a face decide. Realisations show what joints of a kind have in
+common.
 """
 
 from dataclasses import replace
@@ -20,15 +21,15 @@ from ..laws.closure import interface_states
 from ..states.loading import JointLoading
 from ..states.sweep import contact_states
 
-#: Of every realisation over the offsets, under the reference load: unit, long name.
+#: Numbers of every realisation over the offsets, under the reference load: unit, long name.
 AT_OFFSETS = {
     "compliance_slid": ("mm/MPa", "compliance of the interface under the reference load"),
     "area_slid": ("1", "A_r / A_0 under the reference load, corrected for the perimeter"),
     "composite_spread": ("mm", "standard deviation sigma_z of the composite topography"),
 }
-#: Over the offsets and the choices of lags.
+#: Numbers over the offsets and the choices of lags.
 OVER_LAGS = ("lag_dimension",)
-#: Over the directions, and over the axes of two opposite directions, from the rigid slide.
+#: Numbers over the directions, and over the axes of two opposite directions, from the rigid slide.
 OF_DIRECTIONS, OF_AXES = ("plateau_slope", "plateau_change"), ("even_change", "odd_slope")
 
 #: Smallest ratio of successive offsets that are solved, as neighbours hardly differ.
@@ -44,7 +45,8 @@ SLIDING = (*AT_OFFSETS, *OVER_LAGS, *OF_DIRECTIONS, *OF_AXES)
 def spread_offsets(cells: np.ndarray) -> np.ndarray:
     """Offsets of a joint, in cells, ascending, at which its realisations are solved.
 
-    Each is :data:`OFFSET_RATIO` times the one before or more; flush faces are left out.
+    Each offset is :data:`OFFSET_RATIO` times the previous one or more; offsets at which the faces
+    are flush are left out.
     """
     chosen: list[int] = []
     for n in cells[cells > 0]:

@@ -17,9 +17,9 @@ from roughcontact.elastic.halfspace import HalfSpace
 from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
 from ..states.loading import JointLoading
-from ..states.numerical_error import NumericalError, closure_error, numerical_error
+from ..states.numerical_error import NumericalError, closure_numerical_error, numerical_error
 from ..states.states import forces_of
-from ..states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
+from ..states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
 
 #: Largest grids, in cells: at s/2, at s/4, and at s/4 of a study that requests all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
@@ -33,7 +33,7 @@ FACTORS = (1, 2, 4)
 
 #: Quantities of the budget, in its order: unit, long name.
 _OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
-BUDGET_QUANTITIES = QUANTITIES | _OTHERS
+BUDGET_QUANTITIES = STATE_QUANTITIES | _OTHERS
 #: Variables of the atlas, STAGE/VARIABLE, by quantity.
 PLACES = {
     "closure": "closure/interface_closure",
@@ -102,7 +102,7 @@ class LoadCurve:
     def decay_length(self) -> np.ndarray:
         """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e.
 
-        That of the curve through the loads where states that yield have no stiffness.
+        Where states that yield have no stiffness, it is that of the curve through the loads.
         """
         pressure = self.forces / self.loading.area
         length = pressure / self.curve["interface_stiffness"].values
@@ -239,7 +239,7 @@ def curve_errors(
     edge = (raw_area - areas[0]) / raw_area
     length = decay_length * edge
     return [
-        closure_error(closures[0], separations, length, rise),
+        closure_numerical_error(closures[0], separations, length, rise),
         numerical_error("separation", separations, length),
         numerical_error("area_corrected", areas, areas[0] * edge),
         numerical_error("stiffness", stiffnesses, stiffnesses[0] * edge),

@@ -13,8 +13,8 @@ from ..core.labels import cf_attrs
 from ..core.window import window_slices
 from ..joint.joint import prefractal
 from ..laws.strength import OWN, QUARTER, READ, WINDOW
+from ..scan.other_readings import other_readings
 from ..states.loading import JointLoading
-from ..states.scan_spread import other_readings
 from ..states.settlement import bulk_settlement
 from ..states.sweep import load_steps
 from .other_windows import MIN_EFFECTIVE, whole_composite, window_places

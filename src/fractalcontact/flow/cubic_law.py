@@ -148,7 +148,7 @@ def grid_error(gap: np.ndarray, spacing: tuple[float, float], axis: str, flow: F
     gap, spacing, axis
         As of :func:`plane_flow`.
     flow : Flow
-        Of that gap.
+        Flow through the gap.
     """
     dy, dx = spacing
     coarse = flow_of(gap[::2, ::2], (2 * dy, 2 * dx), axis).transmissivity

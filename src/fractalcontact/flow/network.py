@@ -19,8 +19,8 @@ FACE_VALUES = {"harmonic": (False,), "linear": (True,), "mean": (False, True)}
 #: Largest difference of T by both face values, as a fraction of their mean, on a grid that resolves
 #: the flow. Beyond it no face value is known to be near the flow of a finer grid.
 MAX_FACE_DIFFERENCE = 0.3
-#: Gaps below this fraction of the critical gap are closed: their conductances, below 3e-14 of those
-#: on the widest path by harmonic means, would cost the equations their precision.
+#: Fraction of the critical gap below which gaps are closed: their conductances, below 3e-14 of
+#: those on the widest path by harmonic means, would cost the equations their precision.
 CLOSED_BELOW = 3e-5
 #: Fraction of the flow that the flow channels are said to carry.
 CHANNEL_FLOW = 0.9

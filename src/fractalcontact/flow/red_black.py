@@ -110,7 +110,7 @@ def _factorised(lower):
 
 def _by_cholmod(lower):
     cholmod, matrix = cvxopt.cholmod, cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
-    # Else it would compare the order with that of AMD, which takes as long as the factor.
+    # Otherwise CHOLMOD would compare the order with that of AMD, which takes as long as the factor.
     stated = cholmod.options
     cholmod.options = {**stated, "nmethods": 1, "postorder": False}
     try:
@@ -182,7 +182,7 @@ def _separator(is_red, box):
             line = (top + at, top + at + 1, left, right)
         else:
             line = (top, bottom, left + at, left + at + 1)
-        # Of equals the middle one.
+        # Among equal lines the middle one is taken.
         met = is_red[line[0] : line[1], line[2] : line[3]].sum() + abs(at - size // 2) / size
         if met < fewest:
             fewest, separator = met, line

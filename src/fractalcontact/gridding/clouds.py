@@ -13,8 +13,8 @@ from ..registration.surface_motion import Motion
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
-from .measured import NOTE, Measured
 from .triangles import interpolate_mesh, interpolate_points, places_across
+from .ungridded import NOTE, UngriddedScan
 
 _CUT_APART = (
     "save each face in a file of its own, two faces as NAME.lower and NAME.upper, as seen from "
@@ -25,7 +25,7 @@ _OVERHANG_OF_POINTS = (
     "of the points lies beneath others and is left out: an instrument above would not see it",
 )
 
-#: A larger share of points above another one is no repeat by chance.
+#: Largest fraction of points that lie above another point as repeats by chance.
 _MANY_STACKED = 0.05
 
 
@@ -67,7 +67,7 @@ class Cloud:
         return self.density.spacing
 
 
-def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
+def prepare_clouds(scans: Sequence[UngriddedScan]) -> list[Cloud]:
     """Clouds of one or two faces, ready for one grid.
 
     Points on a regular grid of x and y are one height to a node and stay as they are. Others are
@@ -91,7 +91,7 @@ def moved_cloud(cloud: Cloud, motions: Sequence[Motion]) -> Cloud:
 
 
 def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
-    """Heights (ny, nx) of a cloud on a grid, and the words of how they came there."""
+    """Heights (ny, nx) of a cloud on a grid, and the method of gridding in words."""
     where = str(cloud.path)
     area = cloud.area_per_point
     across = places_across(lattice, area)
@@ -117,7 +117,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
 
 
 def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
-    """Heights of a cloud on the lattice its points lie on, and how they came there."""
+    """Heights of a cloud on the lattice its points lie on, and the method in words."""
     mesh, lattice = cloud.mesh, cloud.lattice
     assert lattice is not None  # the caller has checked it
     heights = pts.place_on_lattice(cloud.points, lattice)
@@ -141,7 +141,7 @@ def _refuse_several_faces(mesh: Mesh, heights: np.ndarray, lattice: pts.Lattice,
         )
 
 
-def _merge(scan: Measured) -> Cloud:
+def _merge(scan: UngriddedScan) -> Cloud:
     """Count and join repeats, and look for a lattice."""
     points, repeats = pts.merge_points(scan.values)
     n_finite = int(np.isfinite(points[:, 2]).sum())

@@ -1,4 +1,4 @@
-"""Density of points: their distance, the area of one, the largest circle that is no hole."""
+"""Density of points: their distance, the area of one point, the largest circle that is no hole."""
 
 from dataclasses import dataclass
 
@@ -9,23 +9,24 @@ from ..core.strips import blocks, strips
 from .points import Lattice
 from .triangles import circumradius, doubled_area, on_one_line
 
-#: This many points stand for all where a median is wanted: it is then known to 1 %.
+#: Number of points that stand for all in a median, which is then known to 1 %.
 SAMPLE = 50_000
-#: Triangles are examined in this many patches of this many neighbouring points, or in the whole
-#: cloud if it has fewer points.
+#: Patches in which triangles are examined, and neighbouring points of a patch. A cloud with fewer
+#: points is examined as a whole.
 PATCHES = 20
 PATCH_POINTS = 3_000
-#: Nothing was measured where a circle without points has a radius above this multiple of the usual
-#: circle through three neighbours. That one is 0.62 to 0.73 times the root of the area per point,
-#: for lattices and random clouds alike, and half the distance of the lines where a scanner's lines
-#: lie far apart; chance leaves a circle of the multiple once in 10^5 points.
+#: Least radius of a circle without points in which nothing was measured, in radii of the usual
+#: circle through three neighbours. The usual radius is 0.62 to 0.73 times the root of the area per
+#: point, for lattices and random clouds alike, and half the distance of the lines where a scanner's
+#: lines lie far apart; chance leaves a circle of the multiple once in 10^5 points.
 HOLE_FACTOR = 3.0
-#: The root of the area per point is 1.0 to 1.1 nearest distances on a lattice, 1.1 to 1.2 in clouds
-#: of scanners and 2.1 in a random cloud. Above this the points lie at random, along lines or in
-#: clumps: a grid at the nearest distance would have many cells a point, none of them measured.
+#: Largest root of the area per point, in nearest distances, of points that do not lie at random,
+#: along lines or in clumps: it is 1.0 to 1.1 on a lattice, 1.1 to 1.2 in clouds of scanners and 2.1
+#: in a random cloud. Of other points a grid at the nearest distance would have many cells a point,
+#: none of them measured.
 UNEVEN = 1.5
-#: A cell lies far from all points at this many times the side of the square that a point, or the
-#: cell, has to itself: on a regular lattice none is farther than 0.71 of it.
+#: Least distance of a far cell to all points, in sides of the square that a point, or the cell, has
+#: to itself: on a regular lattice no cell is farther than 0.71 of that side.
 FAR = 1.5
 
 
@@ -118,7 +119,7 @@ def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -
         return float(np.median(held[measured.ravel()]))
     cells, counts = np.unique(_cells_of(points, lattice), return_counts=True)
     counts = np.sort(counts[measured.ravel()[cells]])
-    empty = n_measured - len(counts)  # most cells may be, so that they are not listed
+    empty = n_measured - len(counts)  # most cells may be empty, so `counts` does not list those
     middle = [(n_measured - 1) // 2 - empty, n_measured // 2 - empty]
     return float(np.mean([counts[i] if i >= 0 else 0 for i in middle]))
 

@@ -6,9 +6,11 @@ import numpy as np
 
 from roughcontact.kernel_cache import njit
 
-#: A node on an edge belongs to both triangles, whatever rounding says. As a share of the triangle.
+#: Slack, as a fraction of the triangle, by which a node counts as inside: a node on an edge then
+#: belongs to both triangles in spite of rounding.
 _SLACK = 1e-9
-#: Triangles this thin, as a share of their longest side, stand upright or have no area.
+#: Largest thickness, as a fraction of the longest side, of triangles that stand upright or have no
+#: area.
 _FLAT = 1e-12
 
 

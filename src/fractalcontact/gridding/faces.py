@@ -11,17 +11,17 @@ from ..registration.pairs import MIRRORS, register
 from ..registration.surface_motion import Motion
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
 from .density import far_from_points, points_per_cell
-from .measured import NOTE, Measured, warnings_of
 from .plausible import check_surface
 from .points import Lattice, covering_lattice
+from .ungridded import NOTE, UngriddedScan, warnings_of
 
-#: Two matrices are one grid when their spacings agree this well (relative).
+#: Largest relative difference of the spacings of two matrices on one grid.
 SAME_SPACING = 1e-6
-#: Two lattices are one grid when their nodes coincide within this fraction of a cell.
+#: Largest distance of the nodes of two lattices on one grid, as a fraction of a cell.
 SAME_NODES = 0.01
 
 
-def grid_one(scan: Measured) -> xr.DataArray:
+def grid_one(scan: UngriddedScan) -> xr.DataArray:
     """One scan on its grid."""
     if scan.layout == "matrix":
         return _matrix_heights(scan)
@@ -33,8 +33,8 @@ def grid_one(scan: Measured) -> xr.DataArray:
 
 
 def grid_pair(
-    lower: Measured,
-    upper: Measured,
+    lower: UngriddedScan,
+    upper: UngriddedScan,
     registration: str | None = None,
     mirror_upper: str | None = None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
@@ -69,7 +69,7 @@ def grid_pair(
     return register(z_l, z_u, registration, where, mirrored=mirror_upper, regrid=regrid)
 
 
-def _turned_over(scan: Measured, axis: str) -> Measured:
+def _turned_over(scan: UngriddedScan, axis: str) -> UngriddedScan:
     """A face scanned on its back as it lies in the joint, about its own middle."""
     if scan.layout == "matrix":
         sign_x, sign_y, sign_z = MIRRORS[axis]
@@ -82,7 +82,7 @@ def _turned_over(scan: Measured, axis: str) -> Measured:
     return replace(scan, values=values, provenance=scan.provenance | {"notes": notes})
 
 
-def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
+def _keeps_lattice(scan: UngriddedScan, cloud: Cloud) -> bool:
     """True if the points stay on the lattice they lie on: the user wants no other spacing."""
     lattice = cloud.lattice
     if lattice is None or scan.grid is None:
@@ -90,7 +90,7 @@ def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
     return np.allclose([lattice.dx, lattice.dy], scan.grid, rtol=SAME_SPACING, atol=0)
 
 
-def _matrix_heights(scan: Measured) -> xr.DataArray:
+def _matrix_heights(scan: UngriddedScan) -> xr.DataArray:
     rows, columns = scan.values.shape
     assert scan.spacing is not None  # a matrix has one
     dx, dy = scan.spacing
@@ -98,12 +98,12 @@ def _matrix_heights(scan: Measured) -> xr.DataArray:
     return _label(scan.values, lattice, scan, "")
 
 
-def _placed_heights(scan: Measured, cloud: Cloud) -> xr.DataArray:
+def _placed_heights(scan: UngriddedScan, cloud: Cloud) -> xr.DataArray:
     heights, gridding = place_cloud(cloud)
     return _label(heights, cloud.lattice, scan, gridding, cloud)
 
 
-def _interpolated_heights(scan: Measured, cloud: Cloud, spacing: float) -> xr.DataArray:
+def _interpolated_heights(scan: UngriddedScan, cloud: Cloud, spacing: float) -> xr.DataArray:
     lattice = covering_lattice(cloud.points, spacing, str(scan.path))
     heights, gridding = grid_cloud(cloud, lattice)
     sparse = far_from_points(cloud.points, lattice, cloud.area_per_point)
@@ -111,7 +111,7 @@ def _interpolated_heights(scan: Measured, cloud: Cloud, spacing: float) -> xr.Da
     return labelled.assign_coords(sparse=(("y", "x"), sparse & np.isfinite(heights)))
 
 
-def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.DataArray:
+def _label(heights, lattice, scan: UngriddedScan, gridding: str, cloud=None) -> xr.DataArray:
     """Check the heights and give them coordinates, units and provenance."""
     words = check_surface(heights, (lattice.dx, lattice.dy), scan.path)
     notes = [f"{NOTE}{sentence}" for sentence in words]

@@ -7,12 +7,13 @@ from numpy.typing import ArrayLike
 
 from ..core.limits import STEEP_TILT
 
-#: Points this many quartile distances beyond the quartiles do not decide where the plane lies
-#: (Tukey's far-out fence): spikes and unmarked missing heights.
+#: Distance from the quartiles, in quartile distances, beyond which points do not decide where the
+#: plane lies (Tukey's far-out fence): spikes and unmarked missing heights.
 _FENCE = 3.0
-#: Above this the points alone do not show which side of the face is its upper one.
+#: Largest tilt, degrees, at which the points alone show which side of the face is its upper one.
 UPRIGHT = 85.0  # degrees
-#: What is thicker than this share of its width is no face and has no plane to be levelled by.
+#: Largest thickness of a face as a fraction of its width; a thicker body has no plane to be
+#: levelled by.
 _THICKEST = 0.5
 
 
@@ -32,7 +33,7 @@ def common_plane(
     parts = [cloud[_within_fences(cloud)] for cloud in clouds]
     centres = [part.mean(axis=0) for part in parts]
     scatter = sum(np.cov((p - c).T) for p, c in zip(parts, centres, strict=True))
-    (thickness, width, _), axes = np.linalg.eigh(scatter)  # squares
+    (thickness, width, _), axes = np.linalg.eigh(scatter)  # eigenvalues are squares of lengths
     normal = axes[:, 0] if thickness < _THICKEST**2 * width else np.array([0.0, 0.0, 1.0])
     if upward is not None and tilt_degrees(normal) > UPRIGHT:
         down = normal @ np.asarray(upward) < 0

@@ -24,11 +24,13 @@ HULL_SHARE = 0.8
 MIN_CELLS = 100
 
 
-#: Larger patches of zeros at the corners of an aperture map lie outside a specimen, most likely.
+#: Largest patch of zeros, a fraction of the map, at the corners of an aperture map without an
+#: outline; a larger patch most likely lies outside the specimen.
 MAX_CORNER_ZEROS = 0.005
-#: So does what lies along this fraction of an outline.
+#: Largest fraction of an outline along which zeros may lie; with more, the zeros most likely lie
+#: outside the specimen.
 MAX_RIM_ZEROS = 0.5
-#: A disc without a stated centre may leave this fraction of the contact outside.
+#: Largest fraction of the contact outside a disc without a stated centre.
 MAX_OUTSIDE = 0.01
 
 

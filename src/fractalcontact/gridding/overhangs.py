@@ -9,40 +9,42 @@ from .triangles import doubled_area
 #: Neighbours in the plane that are looked at. Where two layers overlap there are 18 of each, and
 #: by chance those above leave half a circle free once in a thousand points.
 _NEIGHBOURS = 36
-#: A point lies above another if it is steeper towards it than this ...
+#: Least steepness of the line from a point to another that lies above it.
 _STEEPEST = np.tan(np.radians(80.0))
-#: ... and higher by this many lower quartiles of the height differences between nearest neighbours:
-#: white noise alone reaches 16 of them once in a million pairs. The quartile is that of one layer,
-#: even where two of them lie over each other everywhere.
+#: Least rise of a point above another, in lower quartiles of the height differences between nearest
+#: neighbours: white noise alone reaches 16 of them once in a million pairs. The quartile is that of
+#: one layer, even where two layers lie over each other everywhere.
 _NOISE = 20.0
-#: This many neighbours make a layer, above a point or at its level; fewer are spikes.
+#: Fewest neighbours that make a layer, above a point or at its level; fewer are spikes.
 _FEWEST = 6
-#: The points above lie on all sides if no sector wider than this is free of them. Those beyond a
-#: line, as at a step or an upright wall, leave half a circle free.
+#: Widest sector without points above, if points above lie on all sides. Points beyond a line, as at
+#: a step or an upright wall, leave half a circle free.
 _WIDEST_GAP = np.radians(170.0)
-#: Fewer hidden points than this share change no result: at the steps of a fracture some points look
-#: hidden by chance.
+#: Fraction of hidden points below which they change no result: at the steps of a fracture some
+#: points look hidden by chance.
 FEW_HIDDEN = 0.005
 _BLOCK = 100_000  # points whose neighbours are held at once
-#: A mesh is wound alike if hardly an edge runs the same way in two of its triangles.
+#: Largest fraction of edges that run the same way in two triangles of a mesh wound alike.
 _WOUND_ALIKE = 1e-3
-#: ... and closes a body if fewer edges have a triangle on one side alone than this many times the
-#: root of the number of triangles: the rim of a sheet has some three times that.
+#: Most edges with a triangle on one side alone of a mesh that closes a body, over the root of the
+#: number of triangles: the rim of a sheet has some three times the root.
 _OPEN_EDGES = 0.2
-#: A point lies over another layer if its neighbour in the plane is this many times as far above or
-#: below it as the nearest point in space is away.
+#: Least height of a neighbour in the plane above or below a point that lies over another layer, in
+#: distances to the point's nearest neighbour in space.
 _OTHER_LAYER = 10.0
-#: From this mean number of layers on, a mesh that is no closed body holds more than one face. The
-#: cells at its rim, of which some are missing, and overhangs add some hundredths.
+#: Least mean number of layers of a mesh with more than one face, if it is no closed body. Cells at
+#: its rim, of which some are missing, and overhangs add some hundredths.
 SEVERAL_FACES = 1.5
-#: From this share on a cloud has several layers: by chance one point in some thousand does so.
+#: Least fraction of points over another layer in a cloud of several layers: by chance one point in
+#: some thousand lies so.
 SEVERAL_LAYERS = 0.1
-#: Points around a place that are two faces if a height parts them: either side has this share of
-#: them or more, the sides lie this many times as far apart as they scatter (white noise parted at
-#: its mean has 2.6, even heights 3.5) and this many spacings (steps of an instrument have less).
+#: Number of points around a place, and when a height parts them into two faces: the least fraction
+#: of them on either side, the least distance of the sides in units of their scatter (white noise
+#: parted at its mean has 2.6, even heights 3.5) and in spacings (steps of an instrument have less).
 _AROUND, _EITHER, _CLEFT, _SPACINGS = 24, 0.25, 5.0, 0.5
-#: Two faces in one cloud: at this share of its points a height parts the points around, and the
-#: nearest of them lies on the other side. At random half of them do; at a step hardly one does.
+#: Least fraction of the points of a cloud of two faces where a height parts the points around and
+#: the nearest of them lies on the other side. At random half of the nearest points do; at a step
+#: hardly one does.
 TWO_FACES = 0.2
 
 
@@ -82,7 +84,7 @@ def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -
         may_be = np.flatnonzero((above.sum(axis=1) >= _FEWEST) & (fellows >= _FEWEST))
         around = points[neighbours[may_be], :2] - block[may_be, None, :2]
         angles = np.where(above[may_be], np.arctan2(around[..., 1], around[..., 0]), np.nan)
-        angles = np.sort(angles, axis=1)  # NaN last
+        angles = np.sort(angles, axis=1)  # missing angles come last
         across_the_back = angles[:, 0] + 2 * np.pi - np.nanmax(angles, axis=1, initial=-np.pi)
         gap = np.fmax(np.nanmax(np.diff(angles), axis=1, initial=0), across_the_back)
         hidden[start + may_be] = gap < _WIDEST_GAP
@@ -155,12 +157,12 @@ def is_closed(triangles: np.ndarray) -> bool:
 def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
     """Shares of the area of a level mesh that face down, and against most of it.
 
-    The first goes by the sense in which triangles are wound. The second is the smaller of up and
-    down: overhangs; NaN if the triangles are not wound alike.
+    The first share follows the sense in which triangles are wound. The second is the smaller of the
+    shares up and down, which are overhangs; it is NaN if the triangles are not wound alike.
     """
     normal = triangle_normals(vertices, triangles)
     area = np.sqrt((normal**2).sum(axis=1))
-    # What is upright to within rounding faces neither way.
+    # Triangles that are upright to within rounding face neither way.
     down, up = (area[s * normal[:, 2] > 1e-6 * area].sum() for s in (-1, 1))
     if down + up == 0:
         return np.nan, np.nan

@@ -1,7 +1,7 @@
 """Plausibility of gridded heights: what no rough surface has is refused or noted in a sentence.
 
 Refused are sizes and units that no scan has, constants and coordinates. Noted are profiles drawn
-out, planes, two tables in one file and many missing cells: they need not be wrong, and mostly are.
+out, planes, two tables in one file and many missing cells, which are mostly wrong but need not be.
 """
 
 import math
@@ -21,15 +21,17 @@ LARGEST_ASPECT = 100  # of the two spacings of a cell
 #: Degrees of tilt beyond which heights over x and y are no picture of a face any more.
 STEEPEST = 80.0
 CONSTANT = 1e-12  # relative: what interpolating a constant surface leaves
-#: Relief that arithmetic, or the seven digits of single precision, leaves of an exact plane.
+#: Largest relief, as a fraction of the heights, that arithmetic or the seven digits of single
+#: precision leave of an exact plane.
 _PLANE = 1e-6
 #: Fraction of missing cells above which the user is warned.
 MANY_MISSING = 0.5
-#: Rows differ more across a seam, in units of the median difference of neighbouring rows ...
+#: Least difference of the two rows at a seam, in median differences of neighbouring rows.
 _SEAM = 10.0
-#: ... and by this many times the next largest difference: relief has no single cut right across.
+#: Least difference of the two rows at a seam, in units of the next largest difference: relief has
+#: no single cut right across.
 _NEXT = 3.0
-#: Fewer cells that both rows have show no seam.
+#: Fewest cells with heights in both rows that show a seam.
 _MIN_IN_ROW = 8
 #: Cells of a row that are compared across a seam, spread over the row.
 _SAMPLE = 500
@@ -80,8 +82,8 @@ def check_surface(heights: np.ndarray, spacing: tuple[float, float], path: Path)
 def check_spacing(spacing: tuple[float, float], path: Path) -> None:
     """Refuse cells dx, dy in mm that no instrument measures.
 
-    Those are a side that is no length above zero, less than an atom, or more than `LARGEST_ASPECT`
-    times the other.
+    Refused is a side that is no length above zero, is less than an atom, or is more than
+    `LARGEST_ASPECT` times the other.
     """
     dx, dy = spacing
     cells = f"{path}: cells of {dx:.4g} x {dy:.4g} mm are not plausible"

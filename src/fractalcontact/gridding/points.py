@@ -7,17 +7,20 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.strips import blocks
 
-#: Coordinates may stray this fraction of the pitch from a lattice (rounding in the export).
+#: Largest distance of coordinates from a lattice, as a fraction of the pitch: rounding in the
+#: export.
 LATTICE_TOLERANCE = 0.1
-#: Points rounded coarsely lie on a lattice too, but leave most of its nodes empty.
+#: Least fraction of a lattice's nodes with a point: points rounded coarsely lie on a lattice too,
+#: but leave most of its nodes empty.
 LATTICE_MIN_FILL = 0.2
-#: Far above any profilometer; a stray point would otherwise ask for all memory.
+#: Most cells of a grid, far above those of any profilometer; a stray point would otherwise ask for
+#: all memory.
 MAX_CELLS = 200_000_000
-#: A finer grid would only interpolate, and a small file would need gigabytes.
+#: Most cells per point: a finer grid would only interpolate, and a small file would need gigabytes.
 CELLS_PER_POINT = 1000
 _FEW_CELLS = 10_000_000
-#: Coordinates in single precision are worth a note when rounded by this fraction of the distance
-#: of the points.
+#: Least rounding of coordinates in single precision that is worth a note, as a fraction of the
+#: distance of the points.
 COARSE_ROUNDING = 0.01
 
 
@@ -35,7 +38,7 @@ class Lattice:
 
 @dataclass(frozen=True)
 class Repeats:
-    """Points at an x, y that another one has: with the same height, or with another."""
+    """Repeated points, whose x, y are those of another point: of the same height, or of another."""
 
     duplicated: int
     stacked: int
@@ -44,8 +47,8 @@ class Repeats:
 def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
     """Points (m, 3) with one height at each x, y, the mean of all there, and counts of the repeats.
 
-    Points without finite x, y are dropped, and one that is there twice counts once. A height is NaN
-    where none was measured.
+    Points without finite x, y are dropped, and a point that is given twice counts once. A height is
+    NaN where none was measured.
     """
     placed = np.isfinite(points[:, :2]).all(axis=1)
     if not placed.all():
@@ -112,7 +115,7 @@ def single_precision_note(points: np.ndarray) -> str:
     area = np.prod(np.sort(np.ptp(points, axis=0))[1:])
     distance = float(np.sqrt(area / len(points)))
     whole = np.all(points[:, :2] == np.round(points[:, :2]))
-    # At a distance of 0 they lie on one line, and are refused for it.
+    # Points at a distance of 0 lie on one line, and are refused for that.
     if whole or distance == 0 or rounding <= COARSE_ROUNDING * distance:
         return ""
     return (

@@ -10,16 +10,18 @@ from .points import MAX_CELLS, Lattice
 
 #: Points triangulated at once: a few tens of thousands stay in the processor's cache.
 TILE_POINTS = 25_000
-#: A tile has no more places than this either.
+#: Most places of a tile.
 TILE_PLACES = 2_000_000
-#: Qhull takes about 1 GB for this many points; more of them around one cell, or within the largest
-#: circle, are no scan of a surface.
+#: Most points of a tile, for which Qhull takes about 1 GB; more of them around one cell, or within
+#: the largest circle, are no scan of a surface.
 _MAX_IN_TILE = 1_000_000
-#: Points on one line: they stray from it by less than this share of its length (root of rounding).
+#: Largest distance of points on one line from it, as a fraction of its length: the root of
+#: rounding.
 _LINE = 1e-7
-#: Grids are averaged over cells that hold this many points or more, else read at their centres.
+#: Fewest points in a cell of a grid whose heights are averaged over cells; other grids are read at
+#: the centres of cells.
 MIN_TO_AVERAGE = 4
-#: The triangles of a mesh may cover the grid this many times; no surface comes near it.
+#: Most times that the triangles of a mesh cover the grid; no surface comes near it.
 _MAX_LAYERS = 200
 
 
@@ -111,7 +113,7 @@ def places_across(lattice: Lattice, area_per_point: float) -> int:
 def on_one_line(xy: np.ndarray) -> bool:
     """True if points (n, 2) span no area."""
     xy = xy - xy.mean(axis=0)
-    narrow, wide = np.linalg.eigvalsh(xy.T @ xy)  # squares: compare roots
+    narrow, wide = np.linalg.eigvalsh(xy.T @ xy)  # eigenvalues are squares of lengths
     return not (wide > 0 and math.sqrt(max(narrow, 0.0)) > _LINE * math.sqrt(wide))
 
 

@@ -36,7 +36,7 @@ def composite_topography(specimen: xr.Dataset, direction: str, cells: int) -> np
     specimen : xr.Dataset
         From :func:`surface.specimen.make_specimen`.
     direction : {"E", "N", "W", "S", "none"}
-        Where the upper block slides.
+        Direction towards which the upper block slides.
     cells : int
         Offset in cells of the scan.
 

@@ -1,16 +1,13 @@
 """Contact on suspicious cells of the scans: which nodes have them, and how much load they carry.
 
-What is suspicious is found in :mod:`surface.suspect` and :mod:`surface.cleaning`; a node of a
-composite topography is where either of its two cells is.
+Suspicious cells are found in :mod:`surface.suspect` and :mod:`surface.cleaning`; a node of a
+composite topography is suspicious where either of its two cells is.
 """
 
 import numpy as np
 import xarray as xr
 
-from ..core.determined import decided_by_scan
 from ..core.labels import cf_attrs
-from ..core.limits import RESOLVED_NODES
-from ..core.reported import Reported
 from ..core.window import window_slices
 from .joint import slid_window
 
@@ -18,9 +15,9 @@ from .joint import slid_window
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
     """Suspicious nodes (ny, nx) of the composite topography of the window at an offset in cells.
 
-    Where the cell of either face is an outlier, a lone spike, filled, far from any point measured,
-    or in a deep overlap. At zero offset also where the faces overlap at all: a node is there made
-    of the two cells that were scanned at one place.
+    A node is suspicious where the cell of either face is an outlier, a lone spike, filled, far from
+    any point measured, or in a deep overlap. At zero offset it is also where the faces overlap at
+    all: the two cells of a node were then scanned at one place.
     """
     window = window_slices(specimen)
     if "suspect_lower" not in specimen:
@@ -72,59 +69,3 @@ def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
         return 0.0
     total = float(pressure.sum())
     return float(pressure[suspicious].sum()) / total if total > 0 else 0.0
-
-
-def on_sound_cells(curves: xr.Dataset) -> xr.DataArray:
-    """States that fits take and that can seat a joint: ten nodes or more, on sound cells mostly.
-
-    No more than half of the force acts on suspicious cells of the scans.
-    """
-    return curves["resolved"] & ~decided_by_scan(curves["suspect_load_share"])
-
-
-def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
-    """Curves whose fits rest on errors of the scans.
-
-    Suspicious cells carry more than half of the load in half or more of the states that have the
-    nodes to be fitted; of all states where none has.
-    """
-    decisive = decided_by_scan(curves["suspect_load_share"])
-    enough = curves["nodes"] >= RESOLVED_NODES
-    counted = enough.where(enough.any("normal_force"), curves["nodes"] > 0)
-    states = counted.sum("normal_force")
-    return (2 * (decisive & counted).sum("normal_force") >= states) & (states > 0)
-
-
-def load_warning(curves: xr.Dataset, reported: Reported) -> str:
-    """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
-
-    It names, for the reported direction and resolution, the offsets at which suspicious cells carry
-    more than half of the reference load, and those at which they do so in half of the states of ten
-    nodes, which no fit then takes.
-    """
-    finest = reported.curves(curves)
-    mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
-    parts = []
-    worst = float(mapped.max())
-    if decided_by_scan(worst):
-        where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
-        at_maps = decided_by_scan(float(reported.at_offset(mapped)))
-        maps = ", the reported offset among them" if at_maps else ""
-        parts.append(f"up to {worst:.0%} of the reference load (v = {where} mm{maps})")
-    fitted = fits_undetermined(finest)
-    if fitted.any():
-        where = _offset_words(fitted["offset"].values[fitted.values])
-        states = f"half or more of the states of {RESOLVED_NODES} nodes"
-        parts.append(f"most of the load in {states} (v = {where} mm)")
-    if not parts:
-        return ""
-    return (
-        f"suspicious cells of the scans carry {' and '.join(parts)}: "
-        "closure, stiffness and contact are undetermined there"
-    )
-
-
-def _offset_words(offsets: np.ndarray) -> str:
-    """Offsets in a list; of more than three only the ends."""
-    words = [f"{offset:.3g}" for offset in offsets]
-    return ", ".join(words) if len(words) <= 3 else f"{words[0]} ... {words[-1]}"

@@ -7,7 +7,7 @@ from ..core.datasets import labelled
 from ..core.slope_of_sums import slope_of_sums
 from .jrc import roughness_of_profiles
 
-#: Cells of the shortest window, and windows that the longest one fits into the profile.
+#: Cells of the shortest window, and how many of the longest windows fit into the profile.
 _SHORTEST, _MIN_WINDOWS = 8, 8
 _BLOCKS = 8
 _TABLE = {

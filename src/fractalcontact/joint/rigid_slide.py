@@ -29,7 +29,7 @@ class Slide(NamedTuple):
     spread: np.ndarray
     """Standard deviation of h, mm."""
     correlation: np.ndarray
-    """Of the two faces, each less its mean plane; NaN where one is a plane."""
+    """Correlation of the two faces, each less its mean plane; NaN where one is a plane."""
 
 
 def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:
@@ -50,8 +50,8 @@ def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:
 def _composite_sums(lower, upper, corners, highest, sums):
     """Largest h of each place, and its sum and sum of squares, less h of the first cell.
 
-    Row by row for all places, because a row of the window then stays in the processor's cache; and
-    rounding grows with a side and not with the area.
+    Sums are formed row by row for all places: a row of the window then stays in the processor's
+    cache, and rounding grows with a side and not with the area.
     """
     ny, nx = upper.shape
     for i in range(ny):

@@ -125,7 +125,7 @@ def area_laws(
 def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
     """Add the offset whose areas are reported, mm: that of the contact maps.
 
-    Where the faces are flush there, it is chosen among the offsets at which they are not.
+    Where the faces are flush at that offset, another one is chosen, at which they are not.
     """
     rough = result["reduced_pressure"].notnull().all("normal_force")
     offsets = result["offset"].values

@@ -13,12 +13,12 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.limits import PRESSURE_ROUNDING
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.separation import ROUNDING
-from ..states.settlement import bulk_settlement, interface_closure
-from .closure import determined_closure, interface_stiffness, stiffness_reason
+from ..states.settlement import bulk_settlement, interface_closure, interface_stiffness
+from .closure import determined_closure, stiffness_reason
 from .seated_laws import at_reference_pressures, within_span
 
 _STATES = ("branch", "normal_force")
@@ -150,11 +150,14 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     bulk_settled = xr.DataArray(settlement, dims="normal_force")
     closure = interface_closure(data["closure"], bulk_settled, flush)
     closure = determined_closure(closure, flush).transpose(*_STATES)
-    seat = closure[0].where(np.isclose(pressure, seating, rtol=ROUNDING, atol=0)).sum(min_count=1)
-    beyond = pressure >= seating * (1 - ROUNDING)
+    at_seat = np.isclose(pressure, seating, rtol=PRESSURE_ROUNDING, atol=0)
+    seat = closure[0].where(at_seat).sum(min_count=1)
+    beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
-    stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk).where(~flush)
-    reason = stiffness_reason(stiffness, data["stiffness"], flush)
+    compliance = 1 / (data["stiffness"] / loading.area)
+    stiffness = interface_stiffness(compliance, 1 / bulk).where(~flush)
+    no_total = curve["interface_stiffness_reason"].reset_coords(drop=True)
+    reason = stiffness_reason(stiffness, data["stiffness"], flush, no_total)
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,

@@ -6,17 +6,16 @@ import xarray as xr
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
-from ..states.separation import add_seated_closure, add_separation
-from ..states.settlement import bulk_settlement, interface_closure
+from ..states.settlement import bulk_settlement, interface_closure, interface_stiffness
 from ..states.states import OFFSETS, STATE_VARIABLES, WITH_SCATTER, error_attrs
 from .closure_laws import add_closure_laws, at_twice
 from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
+from .separation import add_seated_closure, add_separation
 
 #: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
-SINGLE_CELLS = f"too few contacts (under {RESOLVED_NODES}) carry the change of the force"
 FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
 
 
@@ -67,9 +66,9 @@ def closure_curves(
     fit_range : (float, float), optional
         Smallest and largest force of the fits, N; all by default.
     openings : xr.DataArray, optional
-        From :func:`states.separation.prefractal_openings`.
+        From :func:`joint.openings.prefractal_openings`.
     seating_pressure : float, optional
-        As of :func:`states.separation.add_seated_closure`.
+        As of :func:`laws.separation.add_seated_closure`.
 
     Returns
     -------
@@ -156,27 +155,30 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     ):
         attrs = cf_attrs("1", words.format(fewest))
         added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
-    stiffness = interface_stiffness(
-        curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
-    ).where(~flush)
+    bulk = curves["nominal_pressure"] / curves["bulk_settlement"]
+    stiffness = interface_stiffness(1 / (curves["stiffness"] / area), 1 / bulk).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
-    reason = stiffness_reason(stiffness, curves["stiffness"], flush)
+    reason = stiffness_reason(stiffness, curves["stiffness"], flush, curves["stiffness_reason"])
     # Bare values are stored, because labels made by xr.where have no units.
     why = reason.where(curves["solved"], "").transpose(*order).values
     added["interface_stiffness_reason"] = (order, why, reason.attrs)
     curves.update(added)
+    del curves["stiffness_reason"]
 
 
 def stiffness_reason(
-    interface: xr.DataArray, total: xr.DataArray, flush: xr.DataArray | bool
+    interface: xr.DataArray,
+    total: xr.DataArray,
+    flush: xr.DataArray | bool,
+    no_total: xr.DataArray,
 ) -> xr.DataArray:
     """Reason why states have no stiffness of the interface; "" if they have one.
 
-    ``total`` is the stiffness of interface and blocks together.
+    ``total`` is the stiffness of interface and blocks together, ``no_total`` why that is missing.
     """
-    why = xr.where(total.isnull(), SINGLE_CELLS, FULL_CONTACT)
+    why = xr.where(total.isnull(), no_total, FULL_CONTACT)
     why = xr.where(interface.notnull(), "", xr.where(flush, FLUSH_FACES, why))
     attrs = cf_attrs("1", "why there is no tangent stiffness of the interface")
     return why.transpose(*interface.dims).assign_attrs(attrs)
@@ -230,24 +232,14 @@ def _add_compliance(curves: xr.Dataset) -> None:
 def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
     """Change of the closure by halving the spacing, mm; NaN where it was not solved twice.
 
-    It bounds what finer spacings would still change where closures approach their limit like s or
-    faster, as that of Hertz does; elsewhere it says how far the last halving went.
+    It bounds the change by finer spacings where closures approach their limit like s or faster, as
+    Hertz's does; elsewhere it says how far the last halving went.
     """
     fine = [k for k in closure["resolution"].values if 2 * k in closure["resolution"]]
     coarser = closure.sel(resolution=[2 * k for k in fine]).assign_coords(resolution=fine)
     error = abs(closure - coarser.reindex(resolution=closure["resolution"].values))
     error.attrs = cf_attrs("mm", "closure w, change from twice the spacing to this one")
     return error.transpose(*closure.dims)
-
-
-def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray:
-    """Stiffness of the interface alone, MPa/mm: 1/k = 1/k_int + 1/k_bulk, compliances add up.
-
-    ``total`` is d sigma_0/dw, ``bulk`` sigma_0/w_b. NaN where the whole is no more compliant than
-    the bulk: contact is so full that it answers like a punch.
-    """
-    compliance = 1 / total - 1 / bulk
-    return 1 / compliance.where(compliance > 0)
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:

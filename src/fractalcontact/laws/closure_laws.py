@@ -1,7 +1,7 @@
 """Laws of closure curves: the hyperbola, the semi-logarithmic law, and which of them fits better.
 
-Both have two parameters and are fitted by least squares in the closure to the same states, so that
-their misfits can be compared.
+Both laws have two parameters and are fitted by least squares in the closure to the same states, so
+that their misfits can be compared.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from ..core.per_curve import per_curve
 from ..core.ranges import within
 from ..core.text import percent
 from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, TOO_WIDE, UNDECIDED
-from ..joint.overlap import on_sound_cells
+from .scan_errors import on_sound_cells
 
 #: Fewest states for a law of two parameters: with fewer its interval means nothing.
 MIN_CLOSURE_POINTS = 4

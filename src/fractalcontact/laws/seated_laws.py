@@ -11,12 +11,15 @@ import numpy as np
 import xarray as xr
 
 from ..core.labels import cf_attrs
-from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
+from ..core.limits import (
+    LARGEST_MISFIT,
+    PRESSURE_ROUNDING,
+    REFERENCE_PRESSURES,
+    SEATED_SPAN,
+)
 from ..core.per_curve import per_curve
 from ..core.text import percent
 from ..core.verdicts import TOO_WIDE
-from ..joint.overlap import on_sound_cells
-from ..states.separation import ROUNDING
 from .closure_laws import (
     MIN_CLOSURE_POINTS,
     Hyperbola,
@@ -24,6 +27,7 @@ from .closure_laws import (
     fit_hyperbola,
     fit_semi_logarithmic,
 )
+from .scan_errors import on_sound_cells
 
 #: Reasons why there is no stiffness at a pressure.
 ON_SUSPECTS = "suspicious cells of the scans carry most of the force"
@@ -144,7 +148,7 @@ def _undetermined(hyperbola: Hyperbola, points: int, seat: float, by_scan: bool)
 
 def within_span(pressure: np.ndarray, seat: float) -> np.ndarray:
     """Loads (n,) bool up to :data:`core.limits.SEATED_SPAN` times the seating pressure, MPa."""
-    return pressure <= SEATED_SPAN * seat * (1 + ROUNDING)
+    return pressure <= SEATED_SPAN * seat * (1 + PRESSURE_ROUNDING)
 
 
 def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -31,7 +31,8 @@ from .contact_strength import contact_strength
 
 #: Kinds of variants of a joint: this window, others of the scan, its quarters, other readings.
 OWN, WINDOW, QUARTER, READ = "this window", "other window", "quarter", "other reading"
-#: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
+#: Fraction of the largest offset beyond which the intervals enter the residual strength, their
+#: mean.
 RESIDUAL_FROM = 0.5
 
 
@@ -248,7 +249,7 @@ _LIKE_LABORATORY = 0.01
 
 #: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
-FULL = "half of the window touches, so that the faces no longer ride on asperities"
+HALF_TOUCHES = "half of the window touches, so that the faces no longer ride on asperities"
 
 #: Quantities of one direction: unit, long name, dimensions.
 FIELDS = _QUANTITIES | {
@@ -342,9 +343,9 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     cut = (truncated & at_peak).any(axis=0)
     return {
         "shear_strength_valid": ~truncated & ~full,
-        "shear_strength_reason": np.where(full, FULL, np.where(truncated, TRUNCATED, "")),
+        "shear_strength_reason": np.where(full, HALF_TOUCHES, np.where(truncated, TRUNCATED, "")),
         "peak_strength_valid": ~cut & ~full,
-        "peak_strength_reason": np.where(full, FULL, np.where(cut, TRUNCATED, "")),
+        "peak_strength_reason": np.where(full, HALF_TOUCHES, np.where(cut, TRUNCATED, "")),
         "peak_over_barton": peaks / barton,
     }
 

@@ -78,7 +78,7 @@ def largest_of(test: MeasuredTest, readings: Curve) -> float:
 
 
 class _Calibrated:
-    """The constant that one of the tests calibrates, and closures with it."""
+    """Constant that one of the tests calibrates, and the closures with it."""
 
     def __init__(self, joint, tests, readings):
         self.joint, self.test = joint, next((test for test in tests if test.calibrate), None)
@@ -173,8 +173,9 @@ def _row(
 def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> Estimate:
     """Calibrated over measured closure at the largest pressure that both have, from a datum.
 
-    The error holds the interval of the constant, of the computed closure and of the readings. That
-    of the constant is carried over by the slope nearby: far from it the loads may not reach.
+    The error holds the interval of the constant, of the computed closure and of the readings. The
+    interval of the constant is carried over by the slope near it, because at a distant constant the
+    loads may not reach the pressure.
     """
     best, *ends = np.log(calibrated.factor.ends)
     nearby = [best + np.clip(end - best, -NEAR, NEAR) for end in ends]

@@ -25,7 +25,7 @@ _STATES = 8
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """The joint at its reported offset: loading as it was solved, and what other branches need.
+    """Joint at its reported offset: its loading as solved, and the inputs of other branches.
 
     ``loading`` is at that offset alone; ``curve`` is the interface closure, mm, of resolved states
     on loading over the nominal pressure, MPa; ``seat_closure`` that at the seat of the study.

@@ -19,7 +19,8 @@ _ROUNDING = 1e-9
 class Curve:
     """Values ``y`` (n,) over ascending ``x`` (n,), with the half-widths of their intervals.
 
-    ``log_x`` says that it is interpolated over the logarithm of x: those over a pressure are.
+    ``log_x`` says that the curve is interpolated over the logarithm of x, as curves over a pressure
+    are.
     """
 
     x: np.ndarray
@@ -29,14 +30,16 @@ class Curve:
 
     @classmethod
     def of(cls, x: ArrayLike, y: ArrayLike, error: ArrayLike, *, log_x: bool = True) -> "Curve":
-        """Curve of those points that are known; an unknown error is none."""
+        """Curve of the points with a value; an unknown error counts as none."""
         x, y, error = (np.asarray(values, float) for values in np.broadcast_arrays(x, y, error))
         finite = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
         order = np.argsort(x[finite], kind="stable")
         return cls(x[finite][order], y[finite][order], np.nan_to_num(error[finite][order]), log_x)
 
     def at(self, x: np.ndarray | float) -> Estimate:
-        """Values between the points, NaN outside; the error is the larger of those beside."""
+        """Values between the points, NaN outside; the error is the larger error of the two
+        neighbouring points.
+        """
         x = np.asarray(x, float)
         if self.x.size < MIN_POINTS:
             nothing = np.full(x.shape, np.nan)

@@ -12,7 +12,7 @@ from ..scan.columns import Column, read_columns
 from .curve import MIN_READINGS, Curve, scatter
 from .one_way import require_one_way
 
-#: Columns that are lengths; transmissivities are cubes of one, all others are pressures.
+#: Columns that are lengths. Transmissivities are cubes of lengths, all other columns are pressures.
 _LENGTHS = ("displacement", "dilation", "hydraulic_aperture")
 #: Columns without values below 0.
 _POSITIVE = ("pressure", "shear_strength", "transmissivity", "hydraulic_aperture")
@@ -30,7 +30,7 @@ class TestReadings:
 
     @property
     def said(self) -> str:
-        """Both sentences."""
+        """Note and warning in one text."""
         return "; ".join(filter(None, (self.warning, self.note)))
 
 
@@ -45,7 +45,9 @@ def read_test(test: MeasuredTest) -> TestReadings:
     joint would open under pressure or close while it slides, or no closure is left beside the rock.
     """
     columns = read_columns(test.file, test.columns)
-    (of_x, x), (of_y, y) = ((name, _in_program_units(name, one)) for name, one in columns.items())
+    (of_x, x), (of_y, y) = (
+        (name, _in_program_units(name, column)) for name, column in columns.items()
+    )
     for name, column in columns.items():
         if name in _POSITIVE:
             _require_positive(name, column)

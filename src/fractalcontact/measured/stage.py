@@ -69,22 +69,22 @@ def measured_stage(
         if not tests:
             continue
         read = [read_test(test) for test in tests]
-        readings = [one.curve for one in read]
+        readings = [reading.curve for reading in read]
         if kind == "closure":
             rows, calibration = compare_closure(joint, tests, readings)
             stage.update(stacked([calibration], OF_CALIBRATION, (), ()))
         else:
             rows = [
-                _beside(test, one, computed_curve(test, flow, dilatancy, strength, reported))
-                for test, one in zip(tests, readings, strict=True)
+                _beside(test, curve, computed_curve(test, flow, dilatancy, strength, reported))
+                for test, curve in zip(tests, readings, strict=True)
             ]
-        rows = [row | {"note": one.said} for row, one in zip(rows, read, strict=True)]
+        rows = [row | {"note": reading.said} for row, reading in zip(rows, read, strict=True)]
         stage = stage.merge(_of_kind(kind, tests, rows))
     return {"measured": stage}
 
 
 def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
-    """Readings, and the computed curve at its own points within them."""
+    """Readings of a test, and the computed curve at its own points within them."""
     inside = (computed.x >= readings.x[0]) & (computed.x <= readings.x[-1])
     within = computed.where(inside)
     if not within.x.size and computed.x.size:
@@ -125,15 +125,15 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
     results = [
         {axis: row["readings"].x, "read": replace(row["readings"], y=row["laid"]).values}
         | {"ratio_at_last": _last(row["ratio"]), "reason": ""}
-        | {name: getattr(one, field) for name, (field, *_) in _OF_TESTS.items()}
+        | {name: getattr(of_row, field) for name, (field, *_) in _OF_TESTS.items()}
         | {name: value for name, value in row.items() if name in names}
-        for one, row in zip(tests, rows, strict=True)
+        for of_row, row in zip(tests, rows, strict=True)
     ]
     variables = stacked(results, names, [test])
     data = xr.Dataset({f"{kind}_{name}": variables[name] for name in variables})
     if not data.sizes[point]:  # no test has a computed state: each gets a missing one
         data = data.pad({point: (0, 1)}, keep_attrs=True)
-    return data.assign_coords({test: [one.label for one in tests]})
+    return data.assign_coords({test: [of_kind.label for of_kind in tests]})
 
 
 def _last(ratio: Estimate) -> Estimate:

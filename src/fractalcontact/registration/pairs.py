@@ -16,15 +16,15 @@ from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
 from .registration import biweight_limit, biweight_spread, find_motion
 from .surface_motion import Motion, Surface, correlation, grid_nodes
 
-#: A motion that lowers the gap's biweight spread by less than this fraction is not made:
-#: interpolating between cells costs roughness, and the spread is not known better.
+#: Least fraction by which a motion lowers the gap's biweight spread: interpolating between cells
+#: costs roughness, and the spread is not known better.
 SMALLEST_GAIN = 0.01
 #: Faces whose match, the correlation without their longest waves, is below the first do not belong
 #: together: faces that have nothing to do with each other reach 0.5. The granite pair, a joint
 #: that does not close quite, reaches 0.83.
 POOR_MATCH, GOOD_MATCH = 0.5, 0.7
-#: From this fraction of the cells on where the upper face lies below the lower one, their order is
-#: questioned: an error of the mean gap of two rough faces that touch leaves half of them.
+#: Fraction of the cells with the upper face below the lower one from which the order of the faces
+#: is questioned: an error of the mean gap of two rough faces that touch leaves half of the cells.
 MOSTLY_BELOW = 0.9
 #: Fraction of the cells that touch or overlap where faces are set down: not a scan's one spike.
 _TOUCHING = 0.01
@@ -123,8 +123,8 @@ def register(
 def _upside_down(lower, upper, before: dict, mode: str, where: str) -> str:
     """Name faces of which the upper one lies below the lower one nearly everywhere.
 
-    In one coordinate frame they are in the wrong order. Scanned each in a frame of its own, their
-    heights may have no common zero either.
+    Faces given in one coordinate frame are in the wrong order. Heights of faces scanned in frames
+    of their own may also have no common zero.
     """
     gap = None if before["gap_mean"] is None else _common_gap(lower, upper)
     if gap is None:

@@ -1,6 +1,7 @@
 """Two faces of one joint brought together: the rigid motion that makes their gap most even.
 
-Even for most cells: spikes, and places where one face has lost rock, do not hold the others apart.
+Most cells alone count: spikes, and places where one face has lost rock, do not keep the other cells
+apart.
 """
 
 from dataclasses import replace
@@ -13,19 +14,19 @@ from ..surface.cleaning import find_outliers
 from .face_match import ROTATIONS, averaged, best_match, for_comparison, match
 from .surface_motion import Motion, Surface, grid_nodes
 
-#: A match found further away must be better by this much than the nearest one.
+#: Least gain of a match farther away over the nearest one.
 _CLEARLY_BETTER = 0.05
 #: Cells along the longer side of the finest grid the motion is sought on; finer scans are averaged.
 _FINEST, _COARSEST = 512, 64
 _MIN_CELLS = 64  # common to both faces, to know a gap's spread
 _MAX_STEPS, _MAX_HALVINGS = 50, 8
 _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the search
-#: A cell does not count if its gap is further than this many robust standard deviations from the
-#: centre of all gaps. The biweight with it is 95 % as efficient as least squares where errors are
+#: Distance of a gap from the centre of all gaps, in robust standard deviations, beyond which its
+#: cell does not count. The biweight with it is 95 % as efficient as least squares where errors are
 #: Gaussian (Beaton and Tukey, Technometrics 16 (1974) 147).
 _BIWEIGHT = 4.685
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-#: The limit follows the gap until it changes by less than this part, this number of times at most.
+#: Relative change of the limit at which it no longer follows the gap, and most times that it does.
 _SAME_LIMIT, _MAX_LIMITS = 0.02, 4
 _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 
@@ -197,7 +198,7 @@ def _gauss_newton_step(lower, gap, motion, limit, mode) -> np.ndarray:
     return np.pad(solution[:-1], (0, len(PARAMETERS) + 1 - len(solution)))
 
 
-#: What a motion changes; of "translation" the first two.
+#: Parameters that a motion changes; of "translation" the first two.
 PARAMETERS = ("end_x", "end_y", "rotation", "slope_x", "slope_y")
 
 

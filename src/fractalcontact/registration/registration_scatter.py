@@ -15,7 +15,7 @@ from .surface_motion import Motion
 #: Draws, and blocks along the longer side: gaps farther apart than a block hardly depend on each
 #: other, and from this number of blocks a standard deviation is known to about a sixth.
 MOTIONS, BLOCKS = 20, 6
-#: A block with fewer of its cells present is left out.
+#: Fewest cells present of a block that counts.
 _MIN_CELLS = 16
 #: Fewest blocks to draw from.
 _MIN_BLOCKS = 8

@@ -54,7 +54,7 @@ class Motion:
     def move_points(self, points: np.ndarray, of: np.ndarray | None = None) -> np.ndarray:
         """Move points (n, 3); the tilt turns them in space, as it turns the mean plane.
 
-        That plane is the points' own, or that of other points ``of`` the same face.
+        The mean plane is the points' own, or that of other points ``of`` the same face.
         """
         of = points if of is None else of
         measured = of[np.isfinite(of[:, 2])]

@@ -29,7 +29,7 @@ def columns_of(row: Row, number: Number) -> dict[str, Any]:
 
 
 def old_columns_of(row: Row, number: Number) -> dict[str, Any]:
-    """Columns of a fit by the names that they had in release 1.0, the unit first."""
+    """Columns of a fit by their names of release 1.0, the unit first."""
     if not row.range or row.unit == "1":
         return {}
     start = column_of(_column(row, number), row.unit)

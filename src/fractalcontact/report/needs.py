@@ -1,4 +1,4 @@
-"""Reasons for which a quantity cannot be: what it needs and a specimen or its study lacks."""
+"""Reasons why a specimen has no value of a quantity: what it or its study lacks."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -72,7 +72,7 @@ class Number(NamedTuple):
 
     @property
     def value(self) -> float:
-        """Value of the atlas."""
+        """Value as the atlas has it, unrounded."""
         return float(self.estimate.value)
 
     @property
@@ -130,7 +130,7 @@ class Row:
 
     @property
     def stage(self) -> str:
-        """Stage of the atlas."""
+        """Stage of the atlas that holds the variable."""
         return self.source.partition("/")[0]
 
     @property
@@ -146,12 +146,12 @@ class Row:
 
     @property
     def uncertain(self) -> bool:
-        """True if it has an interval, where that is known."""
+        """True if the quantity has an interval, where that is known."""
         return bool(self.budget or self.error or self.interval or self.range or self.dimension)
 
     @property
     def signed(self) -> bool:
-        """True if it may be zero or of either sign: its errors are no fractions of it."""
+        """True if the quantity may be zero or of either sign: its errors are no fractions of it."""
         return self.dimension or self.within[0] < 0
 
 
@@ -173,8 +173,8 @@ def published() -> tuple[Row, ...]:
     stated = yaml.safe_load(_FILE.read_text(encoding="utf-8"))
     renamed = {"from": "source", "with": "beside"}
     return tuple(
-        Row(name, **{renamed.get(key, key): value for key, value in one.items()})
-        for name, one in stated.items()
+        Row(name, **{renamed.get(key, key): value for key, value in keys.items()})
+        for name, keys in stated.items()
     )
 
 
@@ -196,7 +196,7 @@ def stages_of(*places: str) -> set[str]:
 
 @cache
 def row_of(name: str) -> Row:
-    """Row of this name."""
+    """Row of the register by the name of its quantity."""
     return next(row for row in published() if row.name == name)
 
 
@@ -206,8 +206,8 @@ def row_of(name: str) -> Row:
 def read(row: Row, subject: Subject) -> list[Number]:
     """Numbers of a quantity of a specimen at its reported state.
 
-    There is one for each value of the dimensions that are left, in C order; a single one without
-    ``at`` where the specimen lacks the quantity.
+    There is a number for each value of the dimensions that are left, in C order; a single number
+    without ``at`` where the specimen lacks the quantity.
     """
     for need in row.needs:
         if why := NEEDS[need](subject):
@@ -224,13 +224,13 @@ def read(row: Row, subject: Subject) -> list[Number]:
 
 
 def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:
-    """Number of a quantity under a load, by default the reference load, or its only number."""
+    """Number of a quantity under a load; the first of a quantity that is not over all loads."""
     number = subject.reported.reference if load is None else load
     return under_load(read(row, subject), number, subject.forces.size)
 
 
 def under_load(numbers: list[Number], load: int, loads: int) -> Number:
-    """Number under a load of those of a quantity; the first of what is not over all loads."""
+    """Number of a quantity under a load; the only number of one that is not over all loads."""
     return numbers[load if len(numbers) == loads and "pressure" in numbers[0].at else 0]
 
 
@@ -268,12 +268,12 @@ def total_of(row: Row, subject: Subject, kind: str = "total") -> xr.DataArray | 
 
 
 def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number]:
-    def over(found: xr.DataArray | None, otherwise: Any) -> np.ndarray:
+    def over(other: xr.DataArray | None, otherwise: Any) -> np.ndarray:
         """Values of an array over the places of the quantity."""
-        if found is None:
+        if other is None:
             return np.full(array.shape, otherwise)
-        size = [n if dim in found.dims else 1 for dim, n in array.sizes.items()]
-        ordered = found.transpose(*(dim for dim in array.dims if dim in found.dims))
+        size = [n if dim in other.dims else 1 for dim, n in array.sizes.items()]
+        ordered = other.transpose(*(dim for dim in array.dims if dim in other.dims))
         return np.broadcast_to(ordered.values.reshape(size), array.shape)
 
     def named(source: str, otherwise: Any = math.nan) -> np.ndarray:
@@ -293,8 +293,8 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
     share = named("closure/suspect_load_share" if row.by_scan else "")
     by_scan = decided_by_scan(share)
     at_touch = row.from_touch and _lightest_by_scan(share, value_known=np.isfinite(array.values))
-    beside = {_BESIDE[str(dim)][0]: named(_beside(row, dim)) for dim in array.dims}
-    beside |= {name: named(f"{row.stage}/{name}") for name in row.beside}
+    related = {_BESIDE[str(dim)][0]: named(_beside(row, dim)) for dim in array.dims}
+    related |= {name: named(f"{row.stage}/{name}") for name in row.beside}
     for place in np.ndindex(array.shape):
         why, valid = str(reasons[place]), bool(np.nan_to_num(flags[place]))
         if at_touch and not by_scan[place]:
@@ -307,11 +307,11 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
         if row.range or row.dimension:
             determined &= bool(estimate.known and valid and estimate.determined)
         yield Number(
-            {name: _plain(values[place]) for name, values in beside.items()},
+            {name: _plain(values[place]) for name, values in related.items()},
             estimate,
             missing if solved[place] or not missing else _NOT_SOLVED,
             determined,
-            *(float(one[place]) for one in (error, population, hardest)),
+            *(float(numbers[place]) for numbers in (error, population, hardest)),
         )
 
 

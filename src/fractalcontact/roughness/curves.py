@@ -28,11 +28,11 @@ class Curve(NamedTuple):
     """A measure over lengths, in parts of the surface."""
 
     length: np.ndarray
-    """(k,), mm."""
+    """Lengths (k,), mm."""
     total: np.ndarray
-    """(k, parts): sums of what is averaged."""
+    """Sums (k, parts) of what is averaged."""
     weight: np.ndarray
-    """(k, parts): how much was summed."""
+    """Weights (k, parts): how much was summed."""
 
     def measure(self) -> np.ndarray:
         """Mean over all parts (k,), NaN where nothing was measured."""

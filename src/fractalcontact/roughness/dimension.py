@@ -174,11 +174,11 @@ class MeasuredCurve(NamedTuple):
     """Curve and Hurst exponent by one estimator."""
 
     length: np.ndarray
-    """(k,), mm."""
+    """Lengths (k,), mm."""
     measure: np.ndarray
-    """(k,), NaN where it has no logarithm."""
+    """Measure (k,), NaN where it has no logarithm."""
     used: np.ndarray
-    """(k,) bool: taken into the fit."""
+    """Lengths that the fit takes, (k,) bool."""
     hurst: dict[str, Estimate]
     """H by axis: "both", "x" and "y"."""
     slope_hurst: float

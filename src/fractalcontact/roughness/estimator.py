@@ -13,7 +13,7 @@ class Estimator(NamedTuple):
     """An estimator of H: from the slope of a curve that grows as a power of a length."""
 
     place: int
-    """Its place among all: results and figures come in this order, and no other has it."""
+    """Place among all estimators, each its own: results and figures come in this order."""
     curves: Callable[[np.ndarray, float], dict[str, Curve]]
     """Takes heights and spacing in mm; gives curves by axis: "both", and "x", "y" where the measure
     can be taken along one axis alone."""
@@ -35,5 +35,6 @@ class Estimator(NamedTuple):
     """H that the slope of such a fit gives on average at each of `known_bias.HURST_GRID`, if the
     nodes are `known_bias.POINTS` or those of a `spectrum_model.BAND_LIMITED` surface."""
     nodes: str = POINTS
-    """What they are taken for. Errors of measurement make short lags too rough, as missing waves
-    make them too smooth: of scans neither is taken off."""
+    """Kind of nodes that errors are attributed to. Errors of measurement make short lags too rough,
+    as missing waves make them too smooth: of scans neither is taken off.
+    """

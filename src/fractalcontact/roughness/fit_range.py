@@ -25,9 +25,9 @@ class FitRange(NamedTuple):
 
     shortest: float
     longest: float
-    """mm; not above the shortest where no lag is left."""
+    """Longest lag, mm; not above the shortest where no lag is left."""
     roll_off: RollOff
-    """mm."""
+    """Roll-off of the spectrum, mm."""
     reason: str
 
 

@@ -69,11 +69,11 @@ class FractalRange(NamedTuple):
     noise_rms: Estimate = NO_ESTIMATE
     """Standard deviation of independent errors of the nodes, mm."""
     noise_wavelength: Estimate = NO_ESTIMATE
-    """Where the self-affine line meets the noise floor, mm."""
+    """Wavelength at which the self-affine line meets the noise floor, mm."""
     filter_wavelength: Estimate = NO_ESTIMATE
-    """Where a filter halves the spectrum, mm."""
+    """Wavelength at which a filter halves the spectrum, mm."""
     roll_off_wavelength: Estimate = NO_ESTIMATE
-    """Above which the spectrum is flat, mm."""
+    """Wavelength above which the spectrum is flat, mm."""
     end: Estimate = NO_ESTIMATE
     """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
     misfit: float = np.nan
@@ -152,12 +152,12 @@ def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
 
 def _above_leakage(length, level) -> np.ndarray:
     """Mask of bins that hold more power than the taper leaks from the longest wave."""
-    known = np.isfinite(level) & (level > 0)
-    if known.any():
-        longest = np.flatnonzero(known)[-1]
+    above = np.isfinite(level) & (level > 0)
+    if above.any():
+        longest = np.flatnonzero(above)[-1]
         part = length / length[longest]
-        known &= (level > LEAKAGE * level[longest] * part**6) | (part > 0.5)
-    return known
+        above &= (level > LEAKAGE * level[longest] * part**6) | (part > 0.5)
+    return above
 
 
 # -- fitting ---------------------------------------------------------------------------------------
@@ -274,7 +274,7 @@ def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
     covariance = scatter * inverse @ inverse.T
     intervals = {}
     for name, value in features_of(form, fit.x, x).items():
-        values = np.array([[found.get(name, 0.0)] for found in without])
+        values = np.array([[features.get(name, 0.0)] for features in without])
         gradient = _gradient(form, fit.x, x, name, value)
         of_fit = np.sqrt(gradient @ covariance @ gradient)
         if name == "noise" and value <= np.log(x.min()):

@@ -61,10 +61,10 @@ def _triangles(heights, spacing, direction):
     # Rises along x and y of the two halves of a cell, for both diagonals.
     for rise_x, rise_y in ((b - a, d - b), (d - c, c - a), (b - a, c - a), (d - c, d - b)):
         slope_x, slope_y = rise_x / dx, rise_y / dy
-        known = np.isfinite(slope_x + slope_y)
+        measured = np.isfinite(slope_x + slope_y)
         along = sign * (slope_x if axis == "x" else slope_y)
-        dips.append(np.degrees(np.arctan(along[known])))
-        areas.append(np.sqrt(1 + slope_x**2 + slope_y**2)[known])
+        dips.append(np.degrees(np.arctan(along[measured])))
+        areas.append(np.sqrt(1 + slope_x**2 + slope_y**2)[measured])
     return dips, areas
 
 

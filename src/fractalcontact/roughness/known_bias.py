@@ -28,7 +28,8 @@ from .curves import ratio
 from .roll_off import HURST_GRID, SHARP, levelled_slope_fraction, second_difference_fraction
 from .spectrum_model import ALIASED, BAND_LIMITED
 
-#: Nodes as points of a finer surface, the sampling other than `BAND_LIMITED`: see above.
+#: Nodes as points of a finer surface, the sampling other than `BAND_LIMITED` (docstring of this
+#: module).
 POINTS = ALIASED
 
 #: Exponents of the synthetic surfaces from which the bias of cubes and islands was measured: means
@@ -48,11 +49,11 @@ class Fit(NamedTuple):
     """Fit of the slope of a curve: lengths, size of the surface, axis and spectrum."""
 
     length: np.ndarray
-    """(k,), cells."""
+    """Lengths (k,), cells."""
     side: float
     """Side of a square as large as the surface, cells."""
     axis: str
-    """"both", "x" or "y"."""
+    """Axis of the curve: "both", "x" or "y"."""
     roll_off: float = np.inf
     """Wavelength above which the spectrum is flat, cells; infinite without one."""
     shape: str = SHARP

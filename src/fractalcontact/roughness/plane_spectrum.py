@@ -48,8 +48,8 @@ class PlaneSpectrum:
         first ring follow the slope, shorter ones than those of the last have its value.
         """
         number = np.hypot(number_y, number_x)
-        known = number > 0
-        log_q = np.log(np.where(known, number, self.number[0]))
+        is_wave = number > 0
+        log_q = np.log(np.where(is_wave, number, self.number[0]))
         rings, table = np.log(self.number), np.log(self.density)
         beyond = self.slope * np.minimum(log_q - rings[0], 0)
         place = np.interp(log_q, rings, np.arange(len(rings)))
@@ -58,7 +58,7 @@ class PlaneSpectrum:
         log_c = scipy.ndimage.map_coordinates(
             around, np.array([place, sector + 1]), order=1, mode="nearest"
         )
-        return np.where(known, np.exp(log_c + beyond), 0.0)
+        return np.where(is_wave, np.exp(log_c + beyond), 0.0)
 
 
 def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSpectrum:

@@ -276,11 +276,11 @@ def _profile_spectra(heights, spacing):
     return stacked(rows, _PROFILES, ("face", "axis"), (len(heights), len(AXES)))
 
 
-def _form_words(found: FractalRange) -> str:
+def _form_words(fractal_range: FractalRange) -> str:
     """Model of a spectrum in words; "" without one."""
-    if found.form is None:
+    if fractal_range.form is None:
         return ""
-    form = found.form
+    form = fractal_range.form
     parts = ["self-affine" if form.sampling == "ideal" else f"self-affine, {form.sampling}"]
     parts += ["roll-off"] * form.rolls_off + ["noise floor"] * form.noisy
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
@@ -307,7 +307,7 @@ _RANGE = {
 def _range_end(result, specimen) -> Estimate:
     """Shortest wavelength of the fractal range, mm, over faces and axes, and its cause.
 
-    A distance of points larger than that of the nodes ends it too.
+    A distance of points larger than that of the nodes ends the range too.
     """
     seen = Estimate.read(result, "end")
     words = [face_words(specimen, face) for face in result["face"].values]
@@ -321,8 +321,8 @@ def _range_end(result, specimen) -> Estimate:
         for face, pitch in zip(words, result["point_pitch"], strict=True)
         if pitch > cell_side(specimen)
     ]
-    known = [end for end in ends if end.known]
-    return max(known, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)
+    determined = [end for end in ends if end.known]
+    return max(determined, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)
 
 
 def _compared_with_range(end: Estimate, resolutions, side):

@@ -88,16 +88,16 @@ def range_words(quality: xr.Dataset, face: str) -> str:
 
 def file_warnings(specimen: xr.Dataset) -> list[str]:
     """Warnings from reading the files of a specimen, a sentence each."""
-    found = []
+    sentences = []
     for face in ("lower", "upper"):
         attrs = json.loads(specimen.attrs.get(f"{face}_scan", "{}"))
-        found += [
+        sentences += [
             f"{attrs['source']}: {words}"
             for words in attrs.get("warnings", "").split("\n")
             if words
         ]
     note = json.loads(specimen.attrs.get("registration", "{}")).get("note", "")
-    return found + [part.removesuffix("; ") for part in note.split("NOTE: ")[1:] if part]
+    return sentences + [part.removesuffix("; ") for part in note.split("NOTE: ")[1:] if part]
 
 
 def suspect_words(specimen: xr.Dataset) -> str:

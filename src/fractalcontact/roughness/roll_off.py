@@ -58,7 +58,7 @@ class RollOff(Estimate):
     others: tuple[tuple[str, float], ...] = ()
 
     def scaled(self, factor: float) -> "RollOff":
-        """The same roll-off in another unit of length."""
+        """This roll-off in another unit of length."""
         others = tuple((shape, factor * length) for shape, length in self.others)
         value, low, high = (factor * end for end in self.ends)
         return replace(self, value=value, low=low, high=high, others=others)
@@ -250,7 +250,9 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
 
 
 def _unseen(allowed: np.ndarray, tried: np.ndarray) -> RollOff:
-    """No roll-off, and of each shape the shortest that is allowed (shapes, roll-offs tried)."""
+    """Result without a roll-off: the shortest that is allowed of each shape (shapes, roll-offs
+    tried).
+    """
     shortest = tuple(
         (of, float(min(tried[np.argmax(row)], tried[-2])))
         for of, row in zip(SHAPES, allowed, strict=True)

@@ -62,9 +62,9 @@ def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.nd
     measured = np.isfinite(heights)
     length = min(heights.shape)
     while length >= SHORTEST_SEGMENT:
-        found = {"x": _cut_segments(heights, length), "y": _cut_segments(heights.T, length)}
-        if min(f.size for f, _ in found.values()) >= 0.25 * measured.sum() > 0:
-            return found
+        segments = {"x": _cut_segments(heights, length), "y": _cut_segments(heights.T, length)}
+        if min(f.size for f, _ in segments.values()) >= 0.25 * measured.sum() > 0:
+            return segments
         length = length * 7 // 8
     return {axis: (np.empty((0, 0)), np.empty(0, int)) for axis in "xy"}
 

@@ -18,7 +18,7 @@ from scipy import special
 
 #: Forms of the filter: Gaussian, and powers of the wave number (2 f of straight facets).
 FILTERS = ("Gaussian", "second order", "fourth order")
-#: Effects of the grid on a surface: see above.
+#: Effects of the grid on a surface, which the docstring of this module explains.
 IDEAL, ALIASED, BAND_LIMITED = SAMPLINGS = ("ideal", "aliased", "band-limited")
 
 

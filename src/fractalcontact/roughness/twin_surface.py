@@ -94,7 +94,7 @@ def _translated(normal: np.ndarray, ordered: np.ndarray) -> np.ndarray:
 
 
 def _before_translation(correlation: np.ndarray, ordered: np.ndarray) -> np.ndarray:
-    """Correlation of the normal deviates that heights of this correlation are translated from.
+    """Correlation of normal deviates whose translation to heights gives this correlation.
 
     Mehler's formula: the heights' correlation is the sum of a_k^2 r^k / k! over the Hermite
     polynomials k = 1, 2, ...

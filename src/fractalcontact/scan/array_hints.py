@@ -13,7 +13,7 @@ from .table_hints import add_axes, add_columns, height_column
 from .text_lines import words_of
 
 _HEIGHTS = re.compile(r"(?:^|[^a-z])(?:z|heights?|topo\w*|elev\w*|surf\w*|data)(?:[^a-z]|$)")
-#: A larger array is not looked into.
+#: Most cells of an array that is searched for hints.
 _MAX_CELLS = 20_000_000
 _STEP = re.compile(r"(?:d|delta_?|pixel_?|step_?)([xy])?|spacing|pitch|resolution")
 

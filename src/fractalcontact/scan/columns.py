@@ -17,7 +17,7 @@ from .text_lines import cleaned, open_text
 
 _DELIMITERS = ",;\t"
 _WORDS_OF = {",": "comma", ";": "semicolon", "\t": "tab"}
-#: Steps of a profile may differ from their mean by this part of it.
+#: Largest difference of the steps of a profile from their mean, as a fraction of it.
 _EVEN = 0.01
 _SPREADSHEETS = (".xls", ".xlsx", ".ods")
 #: Sign that old programs write at the end of a text.
@@ -169,7 +169,7 @@ def _matches(stated: str, headings: list[str]) -> list[tuple[int, str]]:
 
 
 def _same(stated: str, heading: str, number: int) -> tuple[int, str] | None:
-    """Number and unit of a column if its heading is the one stated; either may lack the unit."""
+    """Number and unit of a column whose heading is the stated one; either may lack the unit."""
     stated, heading = _plain(stated), _plain(heading)
     (name, unit), (of_file, file_unit) = _name_and_unit(stated), _name_and_unit(heading)
     if unit and heading.lower() == name.lower():
@@ -191,7 +191,7 @@ def _name_and_unit(heading: str) -> tuple[str, str]:
 
 
 def _same_unit(stated: str, of_file: str) -> bool:
-    """True if nothing else is stated than the unit of a file, however a length is written."""
+    """True if a stated unit is none or that of the file, however a length is written."""
     unit = length_unit(stated)
     return stated in ("", of_file) or (unit is not None and unit == length_unit(of_file))
 

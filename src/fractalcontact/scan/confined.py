@@ -85,7 +85,7 @@ def _ask(request: dict, path: Path):
             _server = _Server()
         try:
             return _server.read(request, path)
-        except BaseException:  # after Ctrl-C the rest of this answer would be read as the next
+        except BaseException:  # after Ctrl-C the rest of this answer would pass for the next one
             stop_reader()
             raise
 
@@ -154,7 +154,9 @@ def _read_answer(stream):
 
 
 def _forget_server() -> None:
-    """A forked process must not talk on its parent's socket, nor wait for its parent's lock."""
+    """Drop the reader process in a fork, which must not use its parent's socket or wait for its
+    lock.
+    """
     global _lock, _server
     _lock = threading.Lock()
     if _server is not None:

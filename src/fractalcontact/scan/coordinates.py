@@ -13,7 +13,7 @@ from .options import ScanOptions
 
 #: Axis of the matrix that each coordinate runs along.
 _AXES = {"x": 1, "y": 0}
-#: Steps that differ by more than this fraction of their mean are no even grid.
+#: Largest difference of the steps of an even grid, as a fraction of their mean.
 UNEVEN = 0.01
 
 

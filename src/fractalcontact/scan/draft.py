@@ -22,11 +22,11 @@ _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _READ_AS_ANOTHER = re.compile(
     rf"{_NUMBER}|[.\d]+e[-+]?\d+|\.?(?:nan|inf)|null|true|false|yes|no|on|off", re.IGNORECASE
 )
-#: Words for an opening and no face.
+#: Pattern of words for an opening between faces, not for a face.
 OPENING = re.compile(r"apertures?|(?<![a-z])(gaps?|openings?)(?![a-z])", re.IGNORECASE)
 #: Columns in which the comments of a draft begin.
 _COMMENT_AT = 26
-#: Numbers that may be marks, named at most.
+#: Most numbers named that may mark missing cells.
 _MAX_MARKS = 4
 #: Keys whose mention alone leaves open what would be taken for granted.
 _ASKED = ("heights", "kind", "missing", "first_row", "spacing", "unit", "unit_z")

@@ -1,4 +1,4 @@
-"""The file itself: is it one, does it stay the same, how much is in it."""
+"""Checks of the file itself: whether it is one, stays the same, and how much it holds."""
 
 import hashlib
 import os
@@ -9,9 +9,10 @@ from pathlib import Path
 from ..core.errors import InputError
 from .raw import reading, refuse_larger
 
-#: No measured heights deflate better than this; a bomb does, up to 1 : 1032.
+#: Largest ratio by which a file inflates: no measured heights deflate better, and a bomb does, up
+#: to 1 : 1032.
 LARGEST_RATIO = 200
-#: The ratio counts above this many bytes: a few constant or empty members may exceed it.
+#: Bytes above which the ratio counts: a few constant or empty members may exceed it.
 UNSUSPICIOUS = 64 * 1024**2
 
 

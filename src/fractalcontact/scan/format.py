@@ -7,8 +7,8 @@ from pathlib import Path
 from .options import ScanOptions
 from .raw import RawScan
 
-#: Bytes of memory for each of the file. Heights deflate to a third, double in size as float64, and
-#: are copied two or three times on their way.
+#: Bytes of memory for each byte of the file. Heights deflate to a third, double in size as float64,
+#: and are copied two or three times on their way.
 MEMORY_PER_BYTE = 24
 #: Seconds of processor time, many times what the slowest sound file takes.
 SECONDS_PER_MEGABYTE = 2

@@ -13,7 +13,7 @@ from .format import Format
 from .options import ScanOptions
 from .raw import RawScan
 
-#: By the name of the reader's module.
+#: Formats by the name of the reader's module.
 FORMATS: dict[str, Format] = {name: module.FORMAT for name, module in modules_of(readers).items()}
 
 
@@ -84,5 +84,5 @@ def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
     for form in formats:
         if form.refusal:
             raise InputError(f"{path}: {form.refusal}")
-    known = " ".join(known_extensions())
-    raise InputError(f"{path}: unknown extension {extension!r}; known: {known}")
+    readable = " ".join(known_extensions())
+    raise InputError(f"{path}: unknown extension {extension!r}; known: {readable}")

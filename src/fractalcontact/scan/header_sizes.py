@@ -11,7 +11,7 @@ from ..core.limits import SMALLEST_SIDE
 from ..core.units import length_unit
 from .options import ScanOptions
 
-#: Longer lines and headers state no pair of sides.
+#: Longest line, and most lines of a header, that state a pair of sides.
 _MAX_LINE, _MAX_LINES = 200, 200
 #: Names of the sides of a matrix.
 _SIDES = re.compile(
@@ -19,9 +19,9 @@ _SIDES = re.compile(
     r"(?P<n>\d{1,12})[\s\"']*",
     re.IGNORECASE,
 )
-#: A line of whole numbers alone.
+#: Pattern of a line of whole numbers alone.
 _COUNTS = re.compile(r"\s*\d{1,9}(?:[\s,;]+\d{1,9}){0,2}[\s,;]*")
-#: A whole number that is no part of a decimal, a date or a time.
+#: Pattern of a whole number that is no part of a decimal, a date or a time.
 _WHOLE = re.compile(r"(?<![\w.,/-])(?<!\d:)(\d{1,9})(?![\w.,:/-]*\d)")
 _AFTER_NUMBER = re.compile(r"\d\s*([^\W\d_]+)")
 _PRODUCT = re.compile(r"(?<![\d.,])(\d{1,9})\s*[x×*]\s*(\d{1,9})(?![\d.,]*\d)")

@@ -10,9 +10,9 @@ from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
-from ..gridding.measured import NOTE, Measured, warnings_of
 from ..gridding.plausible import check_spacing
 from ..gridding.points import refuse_one_place, single_precision_note
+from ..gridding.ungridded import NOTE, UngriddedScan, warnings_of
 from .draft import draft_line
 from .options import (
     MATRIX_KEYS,
@@ -26,7 +26,7 @@ from .options import (
 from .raw import IncompleteSidecar, RawScan
 from .undeclared import refuse_or_warn
 
-#: Relief that is confirmed is written with four digits.
+#: Largest relative difference from a confirmed relief, which is written with four digits.
 SAME_RELIEF = 2e-3
 LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
@@ -39,7 +39,7 @@ class ScanFile(NamedTuple):
     checksum: str
 
 
-def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> Measured:
+def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> UngriddedScan:
     """Content of a file converted to mm, with the keys of the sidecar."""
     path, raw = file.path, file.raw
     _refuse_idle_keys(raw, options, path)
@@ -94,13 +94,15 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(
+    return UngriddedScan(
         path, raw.layout, values, spacing, grid, provenance, raw.triangles, not is_aperture, size
     )
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:
-    """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
+    """Refuse numbers such as 1e300, which are damage or an undeclared mark and make arithmetic
+    overflow.
+    """
     finite = np.isfinite(values)
     low, high = values.min(where=finite, initial=np.inf), values.max(where=finite, initial=-np.inf)
     largest = max(low, high, key=abs) if finite.any() else 0.0
@@ -113,7 +115,7 @@ def _refuse_enormous(values: np.ndarray, path: Path) -> None:
 
 
 def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """A key that would change nothing was meant to change something."""
+    """Refuse a key that would change nothing: it was meant to change something."""
     idle = POINT_KEYS if raw.layout == "matrix" else MATRIX_KEYS
     for key in idle:
         is_by_cell = key == "columns" and options.layout == "points"
@@ -155,7 +157,8 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
 def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse ``unit`` where the file gives x and y a unit that heights do not share.
 
-    The owner most likely means the heights, and the key would change the spacing as well.
+    Its owner most likely means the unit of the heights, and the key would change the spacing as
+    well.
     """
     if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
         return

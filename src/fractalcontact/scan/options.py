@@ -79,9 +79,9 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     An unknown key, and a value of the wrong kind, are refused.
     """
     document = {key: _as_list(value) for key, value in (options or {}).items()}
-    known = [key for key in ScanKeys.model_fields if key not in FACES]
-    if unknown := sorted(set(document) - set(known), key=str):
-        raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(known)}")
+    allowed = [key for key in ScanKeys.model_fields if key not in FACES]
+    if unknown := sorted(set(document) - set(allowed), key=str):
+        raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(allowed)}")
     stated = {key: value for key, value in document.items() if value is not None}
     validate(ScanKeys, stated, where)
     for key in ("unit", "unit_xy", "unit_z"):
@@ -122,8 +122,8 @@ def _refuse_one_mark_for_two(options: dict, where: str) -> None:
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
     """Files of the coordinates of the matrix at ``path``, by key; empty if its sidecar names none.
 
-    One without the other is refused, and a name that is not that of another file in the same
-    folder.
+    A file of x without one of y is refused, and so is a name that is not that of another file in
+    the same folder.
     """
     named = {key: str(options[key]) for key in COORDINATE_KEYS if options.get(key) is not None}
     if not named:

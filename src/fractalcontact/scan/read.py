@@ -10,8 +10,8 @@ from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..gridding.faces import grid_one, grid_pair
-from ..gridding.measured import Measured
 from ..gridding.outline import within_outline
+from ..gridding.ungridded import UngriddedScan
 from .confined import read_confined
 from .draft import OPENING, draft_line
 from .files import is_unchanged, regular_file, sha256
@@ -25,7 +25,7 @@ from .options import (
 )
 from .raw import IncompleteSidecar, RawScan
 
-__all__ = ["measure", "measure_faces", "read_faces", "read_matrix", "read_scan"]
+__all__ = ["faces_in_mm", "read_faces", "read_matrix", "read_scan", "scan_in_mm"]
 
 
 def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
@@ -56,7 +56,7 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     scan = grid_one(in_mm(_read(Path(path), given), given))
     if given.kind != APERTURE:
         return scan
-    # Cells outside that are known by their number are missing by now.
+    # Cells outside an outline that is stated by their number are missing already.
     is_masked = isinstance(given.outline, dict) and "mask" in given.outline
     return within_outline(scan, None if is_masked else given.outline, f"sidecar of {path}")
 
@@ -101,13 +101,13 @@ def read_faces(
                     f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
                 )
         return read_scan(lower_path, options), None
-    lower, upper, given = measure_faces(lower_path, upper_path, options)
+    lower, upper, given = faces_in_mm(lower_path, upper_path, options)
     return grid_pair(lower, upper, given.registration, given.mirror_upper)
 
 
-def measure_faces(
+def faces_in_mm(
     lower_path: Path | str, upper_path: Path | str, options: Mapping | None = None
-) -> tuple[Measured, Measured, ScanOptions]:
+) -> tuple[UngriddedScan, UngriddedScan, ScanOptions]:
     """Numbers of both files of a joint in mm, before they are on a grid, and the keys of the pair.
 
     Options and errors are those of `read_faces`, but for what :func:`gridding.faces.grid_pair`
@@ -130,14 +130,14 @@ def read_matrix(
     ascending. Points are refused, and otherwise what `read_scan` refuses, but for numbers that
     cannot be heights.
     """
-    measured = measure(Path(path), options, are_heights=False)
-    if measured.layout != "matrix":
+    scan = scan_in_mm(Path(path), options, are_heights=False)
+    if scan.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
-    assert measured.spacing is not None  # a matrix has one
-    return measured.values, measured.spacing, measured.provenance
+    assert scan.spacing is not None  # a matrix has one
+    return scan.values, scan.spacing, scan.provenance
 
 
-def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
+def scan_in_mm(path: Path, options: Mapping | None, *, are_heights: bool = True) -> UngriddedScan:
     """Numbers of a file in mm, before they are on a grid, as its sidecar states.
 
     ``are_heights`` is False of a contact map, whose numbers may be anything. Errors are those of

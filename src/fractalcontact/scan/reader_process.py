@@ -32,7 +32,8 @@ from .transfer import from_text, send_scan, to_text
 BASE_MEMORY = 1024**3
 #: Seconds of processor time for a file of any size.
 BASE_SECONDS = 8
-#: A machine shared with others, or a slow disc, may take this many times as long by the clock.
+#: Seconds by the clock over those of processor that the reader may take, on a machine shared with
+#: others or with a slow disc.
 PATIENCE = 4
 _MAX_FILES = 64
 #: Longest message in characters; sentences of this program are far shorter.

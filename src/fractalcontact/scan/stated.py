@@ -1,7 +1,7 @@
 """Keys that the owner of a file must state, because the file itself does not: nothing is guessed.
 
-What describes itself (instruments' files, X3P, netCDF by the CF conventions, text whose columns are
-named x, y and z with a unit each) needs none of them.
+A file that describes itself (instruments' files, X3P, netCDF by the CF conventions, text whose
+columns are named x, y and z with a unit each) needs none of them.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,7 +1,8 @@
-"""Statements of a header on the keys of a sidecar, told from lines that only mention a word.
+"""Statements of a header on the keys of a sidecar, apart from lines that only mention a word.
 
 A line states something if it holds nothing else: ``heights in um``, ``dx = 0.1 mm; dy = 0.2 mm``,
-``NODATA_value -9999``. What a line mentions among other words is asked, the line quoted.
+``NODATA_value -9999``. A key that a line mentions among other words is asked of the user, with the
+line.
 """
 
 import re
@@ -12,7 +13,7 @@ from typing import Any
 from ..core.labels import printable
 from ..core.units import length_unit
 
-#: Longer lines state nothing.
+#: Longest line that states anything.
 _MAX_LINE = 300
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _WORD = r"[^\W\d_]+"

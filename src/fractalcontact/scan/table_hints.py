@@ -19,10 +19,10 @@ _AXES = {
 }
 _CELLS = {"x": re.compile(r"col(umn)?s?|i"), "y": re.compile(r"rows?|j")}
 _UNIT = re.compile(r"\s*[\[(/_].*$")
-#: Steps of coordinates that are written with few digits differ by less than this part of them.
+#: Largest difference of the steps of coordinates written with few digits, as a fraction of a step.
 _EVEN = 0.02
 _MIN_RUN = 5
-#: Fewer rows show no coordinates in columns.
+#: Fewest rows that show coordinates in columns.
 _MIN_POINTS = 48
 
 
@@ -42,7 +42,7 @@ def axis_of(name: str) -> tuple[str, bool]:
 
 
 def add_columns(hints: Hints, names: Sequence[str], table: np.ndarray, source: str) -> None:
-    """Suggest the columns of x, y and z that names tell, else ask for them."""
+    """Suggest the columns of x, y and z that names state, else ask for them."""
     said = [axis_of(name) for name in names]
     axes = [axis for axis, _ in said]
     lateral = coordinate_columns(table)
@@ -79,7 +79,9 @@ def _columns_in_doubt(
 
 
 def coordinate_columns(table: np.ndarray) -> list[int]:
-    """Only two columns whose numbers are places of a grid, each repeated; [] if none or several."""
+    """Columns of the coordinates x and y: the only two whose numbers are places of a grid, each
+    repeated; [] if none or several.
+    """
     if len(table) < _MIN_POINTS:
         return []
     counts = [len(np.unique(column[np.isfinite(column)])) for column in table.T]

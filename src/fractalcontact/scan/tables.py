@@ -13,11 +13,12 @@ from ..core.limits import SMALLEST_SIDE
 from .options import ScanOptions
 from .raw import RawScan
 
-#: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
+#: Most empty cells that numbered columns and rows may leave for each cell that they fill.
 MAX_EMPTY_PER_POINT = 20
-#: More blocks of points than this are scan lines, not clouds.
+#: Most blocks of points that are clouds; more blocks are scan lines.
 _MAX_CLOUDS = 4
-#: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
+#: Largest distance of coordinates from equal steps, as a fraction of a step: rounding in the
+#: export.
 EVEN = 0.1
 
 
@@ -161,8 +162,8 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
 def _refuse_stacked(rows: int, breaks: Mapping[int, int], options: ScanOptions, where: str) -> None:
     """Refuse tables under one another, parted by lines without numbers.
 
-    Lines between rows in even steps part none. Other lines are accepted if the sidecar confirms the
-    size of the whole.
+    Lines between rows in even steps separate no tables. Other lines are accepted if the sidecar
+    confirms the size of the whole.
     """
     sizes = np.diff([0, *breaks, rows])
     if len(sizes) < 2 or options.confirmed is not None:

@@ -16,15 +16,15 @@ from .text_style import add_style
 
 _MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
-#: Lines of words in front of the numbers that a table which describes itself may have.
+#: Most lines of words in front of the numbers of a table that describes itself.
 _MAX_ABOVE = 200
-#: Characters of a line that names columns; patterns take the square of them, at worst.
+#: Longest line, in characters, that names columns; patterns take the square of them, at worst.
 _MAX_HEADING = 2_000
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
-#: Numbers whose point may part thousands as well.
+#: Pattern of numbers whose point may part thousands as well.
 _MAYBE_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(\.\d{3})+")
-#: The width or height of a field, as programs write it in a line of its own.
+#: Pattern of the width or height of a field, as programs write it in a line of its own.
 _FIELD = re.compile(r"#?\s*[^:=]+:\s*([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\W\d]+)")
 _MAX_WORDS = 4
 _MAX_WORD = 40
@@ -41,7 +41,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """Scan keys, and units for `RawScan`, of a table whose columns name x, y, z and units.
 
     The names stand in the line above the numbers, one for each column: ``x [mm], y [mm], z [um]``.
-    None for any other text, and where a comma or point might mean two things.
+    No columns of any other text, and none where a comma or point might mean two things.
     """
     lines = first_lines(path)
     number = _first_numbers(lines[: _MAX_ABOVE + 1])
@@ -219,7 +219,7 @@ def _numbers(rows: list[list[str]], width: int, form: ScanOptions) -> np.ndarray
 def _add_field(hints: Hints, above: list[str], shape: tuple[int, int]) -> None:
     """Suggest the spacing of a field as Gwyddion states it: channel, width, height, unit.
 
-    Its width is that of all cells, and its first row the top.
+    The width of a field is that of all cells, and the first row is the top.
     """
     if len(above) != 4 or not all(line.startswith("# ") and ":" in line for line in above):
         return

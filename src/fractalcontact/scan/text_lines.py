@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..core.errors import InputError
-from ..gridding.measured import NOTE
+from ..gridding.ungridded import NOTE
 from .options import ScanOptions
 
 COMMENT_MARKS = ("#", "%", "//", "!")
@@ -16,7 +16,7 @@ _FORTRAN_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[-+]?\d)")
 _QUOTED = re.compile(r'"[^"]*"')
 ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
-#: A number or its beginning; a cut character of UTF-16 is the last sign.
+#: Pattern of a number or its beginning; a cut character of UTF-16 is the last sign.
 _BEGUN = re.compile(r"(?=.)[-+\d.,']*(?:[eEdD][-+]?\d*)?\ufffd?")
 _BLOCK = 2**24  # bytes
 MAX_ROWS = 60  # last rows whose numbers tell how the last one is written
@@ -57,7 +57,7 @@ def _encoding(path: Path) -> str:
             while content := stream.read(_BLOCK):
                 decoder.decode(content)
             decoder.decode(b"", final=True)
-        except UnicodeDecodeError:  # instruments in Europe still write this one
+        except UnicodeDecodeError:  # instruments in Europe still write this encoding
             return "latin-1"
     return "utf-8-sig"
 
@@ -155,7 +155,7 @@ def _breaks_form(last: tuple[int, int | None], forms: list[tuple[int, int | None
 def _form(number: str) -> tuple[int, int | None]:
     """Decimals of a number, and digits of its exponent if it has one."""
     match = _ENDING.search(number)
-    assert match is not None  # nothing matches as well
+    assert match is not None  # the pattern also matches an empty text
     exponent = match["exponent"]
     digits = None if exponent is None else len(exponent.lstrip("+-"))
     return len(match["decimals"] or ""), digits

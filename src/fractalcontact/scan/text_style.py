@@ -79,7 +79,7 @@ def _maybe_grouped(numbers: list[str]) -> str:
         others = [number for number in numbers if mark not in number]
         grouped = rf"[-+]?[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+"
         whole = [bool(re.fullmatch(r"[-+]?(?:0|[1-9]\d{0,2})", number)) for number in others]
-        # A mark of missing cells such as -9999 is often written without.
+        # A mark of missing cells such as -9999 is often written without thousands signs.
         is_grouped = bool(marked) and all(re.fullmatch(grouped, number) for number in marked)
         if is_grouped and whole.count(False) <= _MAX_UNGROUPED * len(numbers):
             return mark

@@ -7,30 +7,33 @@ import numpy as np
 from ..core.errors import InputError
 from ..gridding.overhangs import is_closed
 
-#: A number is far outside if it lies this many quartile distances of the others from the nearest
-#: of them: the extremes of any relief, level or tilted, lie within a few of each other.
+#: Least distance of a number far outside from the nearest of the others, in their quartile
+#: distances: the extremes of any relief, level or tilted, lie within a few of each other.
 _FAR = 10.0
-#: ... and this many cells hold it; a single one is a spike, unless it is a usual mark.
+#: Fewest cells that hold a number far outside which is a mark; a single one is a spike, unless it
+#: is a usual mark.
 _FEWEST = 3
 _USUAL = (-9999.0, -99999.0, -999999.0, 9999.0, 99999.0, -999.0, -32768.0, -32767.0, 32767.0)
-#: A number among the others is suspected if this many cells hold it, and this many times
-#: as many cells as hold the next one: heights of instruments repeat, but none that much more.
+#: Fewest cells that hold a suspected number among the others, and how many times as many as hold
+#: the next one: heights of instruments repeat, but none that much more.
 _REPEATED, _DOMINANT = 30, 10.0
-#: Cells looked at for that: a fixed draw, so that a large scan costs no more than a small one.
+#: Most cells in which such numbers are looked for: a fixed draw, so that a large scan costs no more
+#: than a small one.
 _SAMPLE = 500_000
-#: Fewer different heights are those of a synthetic surface of a few levels.
+#: Fewest different heights of a scan; fewer are those of a synthetic surface of a few levels.
 _MIN_LEVELS = 16
-#: Numbers on either side that the count of a number is compared with, and numbers looked at.
+#: Neighbouring numbers, on either side, whose counts are compared with that of a number; and most
+#: numbers examined.
 _BESIDE, _MAX_LOOKED_AT = 5, 200
-#: Fewer whole numbers than this are expected by chance where one is a rarity.
+#: Largest number of whole numbers expected by chance where a whole number is a rarity.
 _RARE = 0.3
-#: A number lies apart from the others by this part of their range.
+#: Least distance of a number apart from the others, as a fraction of their range.
 _APART = 0.2
 #: Ends of grey levels and counts that instruments set.
 _ENDS_OF_COUNTS = (0.0, 255.0, 65535.0, -32768.0, 32767.0)
-#: This many marks are looked for.
+#: Most marks that are looked for.
 _MAX_MARKS = 4
-#: Text and single precision change a mark by less than this fraction.
+#: Largest relative change of a mark by text and single precision.
 _SAME = 1e-6
 
 

@@ -34,7 +34,7 @@ def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:
 
 
 def spread_windows(parts: int, most: int) -> np.ndarray:
-    """Places in what :func:`split` returns of at most ``most`` sub-windows, on an even lattice."""
+    """Indices of at most ``most`` of the sub-windows of :func:`split`, on an even lattice."""
     along = min(parts, max(1, int(np.sqrt(most))))
     place = ((np.arange(along) + 0.5) * parts / along).astype(int)
     return (place[:, np.newaxis] * parts + place).ravel()

@@ -16,8 +16,8 @@ from .size_exponents import add_size_exponents, of_usable_sizes
 from .strength_laws import add_slope_trends, strength_by_size
 from .window_means import add_law, add_mean, power_through
 
-#: Eq. 2 is fitted from this many cells to this fraction of the window's side unless a range is
-#: given: the range of the roughness-length estimator of :mod:`roughness.dimension`.
+#: Cells, and fraction of the window's side, between which eq. 2 is fitted unless a range is given:
+#: the range of the roughness-length estimator of :mod:`roughness.dimension`.
 FIRST_FITTED_CELLS, LAST_FITTED_FRACTION = 8, 1 / 4
 
 #: Means over sub-windows that are fitted as powers of b: name of the exponent, fewest nodes in
@@ -35,7 +35,7 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
-#: Those without the part of the bulk; below 0 they mean nothing.
+#: Means without the part of the bulk; below 0 they mean nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 

@@ -28,10 +28,10 @@ from .sub_windows import SubWindows
 
 #: Fewest nodes per side of the smallest sub-windows at a resolution that is used.
 MIN_NODES_PER_SIDE = 12
-#: The whole window is tested at the study's loads and, while sub-windows hold too few nodes, at up
-#: to this many doublings of the largest: loads that no rock would stand as an elastic body.
+#: Most doublings of the study's largest load at which the whole window is tested while sub-windows
+#: hold too few nodes: loads that no rock would stand as an elastic body.
 TESTED_DOUBLINGS = 3
-#: This many more doublings may be needed for small windows to have the sigma* of the whole; see
+#: Most further doublings, which small windows may need to have the sigma* of the whole; see
 #: :func:`solve_sub_windows` for when they are solved.
 SPARE_DOUBLINGS = 3
 #: Largest load, as a fraction of the load that a window carries at the hardness.
@@ -125,11 +125,11 @@ class _LoadedSize(SubWindows):
     sampling : (resolution, step) ndarray
         Relative sampling error of that of a window alone.
     left : (resolution, step, left_out) ndarray
-        Fractions of it, see :mod:`states.left_out`.
+        Fractions of that area, see :mod:`states.left_out`.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
-        Of a window alone at the finest resolution, a step each.
+        Domains of a window alone at the finest resolution, one for each step.
     bulk_compliance : float
         Bulk settlement over sigma_0, mm/MPa.
     """
@@ -157,7 +157,7 @@ class _LoadedSize(SubWindows):
         self.bulk_compliance = self.settlement[0] / pressures[0]
 
     def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
-        """Store the numbers of a state; of a window alone also its domain."""
+        """Store the numbers of a state and, where the window is loaded alone, its domain."""
         place, alone = (window, resolution, step), len(self.nodes) == 1
         self.nodes[place] = np.count_nonzero(state.in_contact)
         self.ambiguous[place] = state.ambiguous
@@ -203,9 +203,10 @@ class _LoadedSize(SubWindows):
             self.extend(1)
 
     def resolved(self) -> bool:
-        """True if sub-windows hold nodes enough under the last load, for all that is tested.
+        """True if the sub-windows hold enough nodes under the last load for every test.
 
-        Each for its corrected area, and on the average at every resolution for sigma*.
+        Every sub-window needs enough for its corrected area; sigma* needs enough on the average at
+        every resolution.
         """
         nodes = self.nodes[:, :, self.solved - 1]
         fewest, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()

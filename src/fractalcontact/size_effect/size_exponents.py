@@ -42,8 +42,8 @@ def of_usable_sizes(values: np.ndarray, nodes: np.ndarray, fewest: int) -> np.nd
 def usable_sizes(nodes: np.ndarray, fewest: int) -> np.ndarray:
     """Sizes (part, ...) all of whose sub-windows hold nodes enough; nodes (part, window, ...).
 
-    Nodes are NaN where there are fewer sub-windows. One state of too few nodes leaves out its size,
-    not itself: those left would be the windows that touch most, and small windows would seem to
+    Nodes are NaN where there are fewer sub-windows. One state of too few nodes leaves out its whole
+    size: the states left would be the windows that touch most, so that small windows would seem to
     touch more.
     """
     solved = np.isfinite(nodes)

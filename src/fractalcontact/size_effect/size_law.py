@@ -13,7 +13,7 @@ from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from .size_exponents import add_size_exponents, of_usable_sizes, usable_sizes
 
 #: Quantities of sub-windows: name, exponent, fewest nodes of every window of a size, what it is.
-QUANTITIES = {
+WINDOW_QUANTITIES = {
     "area_fraction": ("area_exponent", CORRECTED_NODES, "corrected A_r/A_0"),
     "interface_compliance": ("compliance_exponent", RESOLVED_NODES, "interface compliance"),
     "mean_gap": ("gap_exponent", RESOLVED_NODES, "mean gap"),
@@ -35,8 +35,8 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     """Corrected area, compliance and mean gap against b at equal nominal pressure.
 
     ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`. Over (normal_force,
-    part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size with the interval over
-    them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
+    part): :data:`WINDOW_QUANTITIES`, means over the disjoint sub-windows of a size with the
+    interval over them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
     ``central_load``. Over (normal_force,): ``area_exponent``, ``compliance_exponent`` and
     ``gap_exponent``, by :func:`size_effect.size_exponents.add_size_exponents`.
 
@@ -65,7 +65,7 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
         },
         coords={"part": states["part"]},
     ).assign(side=states["side"])
-    for name, (exponent, fewest, words) in QUANTITIES.items():
+    for name, (exponent, fewest, words) in WINDOW_QUANTITIES.items():
         values = tested[name].transpose(*dims)
         values = values.copy(data=of_usable_sizes(values.values, nodes.values, fewest))
         mean = mean_interval(values.values, axis=1).mapped(np.transpose)

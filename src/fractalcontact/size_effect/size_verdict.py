@@ -1,4 +1,4 @@
-"""The rule that decides whether a specimen follows eq. 6: the only one, and nothing else.
+"""Rule that decides whether a specimen follows eq. 6.
 
 Eq. 6 is tested in two forms. The well-conditioned one compares the exponent of A_r/A_0 over b at
 equal nominal pressure with -(2 - Delta_sigma), which dilations of one contact set have. Its own
@@ -19,14 +19,14 @@ from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UND
 
 #: Largest difference of exponents by rounding alone.
 ROUNDING = 1e-9
-#: A prediction whose 95 % interval is wider than this, end to end, is inconclusive.
+#: Largest width of the 95 % interval of a conclusive prediction.
 WIDEST_PREDICTION = 0.4
-#: A prediction or an exponent smaller than this is no size effect.
+#: Largest size of a prediction or an exponent that is no size effect.
 NO_EFFECT = 0.02
-#: A slope whose own 95 % interval is wider than this is inconclusive.
+#: Largest width of the 95 % interval of a conclusive slope.
 WIDEST_SLOPE = 1.0
-#: A larger condition number |d ln sigma_0 / d ln sigma*| is inconclusive: what the area of 30 nodes
-#: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
+#: Largest condition number |d ln sigma_0 / d ln sigma*| that is conclusive: what the area of 30
+#: nodes leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
 #: Why a prediction or a slope is not judged or not decided.
@@ -100,9 +100,9 @@ def judge_own_form(
 
 
 def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
-    """Verdict and reason on eq. 6 under one load: the well-conditioned form's.
+    """Verdict and reason on eq. 6 under one load, those of the well-conditioned form.
 
-    Where that agrees, what its own form adds.
+    Where it agrees, the reason adds what eq. 6 says in its own form.
     """
     if area.verdict != AGREES:
         return area.verdict, area.reason

@@ -75,7 +75,7 @@ def _places(
 
 
 def _at_end(curves: np.ndarray, errors: np.ndarray, sign: int) -> np.ndarray:
-    """Curves of parts at their upper and of the whole at its lower error; -1 for the reverse.
+    """Curves of the parts at their upper error and of the whole at its lower; the reverse for -1.
 
     NaN where an error has no bound.
     """
@@ -87,7 +87,7 @@ def _at_end(curves: np.ndarray, errors: np.ndarray, sign: int) -> np.ndarray:
 def _error_bound(pressures: np.ndarray, ends: list[np.ndarray]) -> np.ndarray:
     """Error bound of pressures: the larger distance to both ends of the certain range.
 
-    Infinite where the value is not reached at one of them.
+    Infinite where the value is not reached at one end.
     """
     off = np.max([abs(end - pressures) for end in ends], axis=0)
     return np.where(np.isfinite(pressures) & ~np.isfinite(off), np.inf, off)

@@ -227,8 +227,8 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
 def _largest_exponent(strength: np.ndarray, bound: np.ndarray, side: np.ndarray) -> Estimate:
     """Exponent of strengths (part,) against b, some of which are lower bounds.
 
-    A line falls faster as values left of its middle rise. So a fit with bounds at small sizes is
-    the largest exponent that they allow; those at sizes beyond the middle are left out.
+    A line falls faster as values left of its middle rise. So a fit with bounds at small sizes gives
+    the largest exponent that the bounds allow; bounds at sizes beyond the middle are left out.
     """
     x, kept = np.log(side), strength > 0
     while (beyond := kept & bound & (kept.sum() * x > x[kept].sum())).any():

@@ -25,7 +25,7 @@ class SubWindows(ABC):
     pressures : (step,) ndarray
         Nominal, MPa, ascending.
     where : str
-        What is loaded, for errors.
+        Name of the loaded specimen or window, for errors.
     factors : sequence of int, optional
         Resolutions k, the finest first.
     places : (window,) int array_like, optional
@@ -78,4 +78,4 @@ class SubWindows(ABC):
 
     @abstractmethod
     def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
-        """Store the numbers of a state that are wanted of it."""
+        """Store the numbers of a state that the caller needs."""

@@ -19,7 +19,8 @@ def add_mean(
 ) -> None:
     """Mean over the sub-windows with its interval, into ``result``.
 
-    With solver error bounds of the values also an ``_error``: their mean bounds that of the mean.
+    With solver error bounds of the values there is an ``_error``, too: the mean of the bounds is a
+    bound of the mean.
     """
     dims = tuple(dim for dim in values.dims if dim != "window")
     units, long_name = values.attrs["units"], values.attrs["long_name"]
@@ -87,9 +88,9 @@ def add_exponents(
     function : callable
         Exponent of one curve, fitted over log b, b in mm.
     words : str
-        What the exponent is of.
+        Name of the quantity whose exponent it is, in words.
     points : str
-        What was fitted.
+        Name of the fitted numbers, in words.
     """
     names = {
         name: ("1", words),

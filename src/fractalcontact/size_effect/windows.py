@@ -70,9 +70,11 @@ def window_states(
     parts: Sequence[int] = PARTS,
     most: int = MAX_WINDOWS,
 ) -> xr.Dataset:
-    """Contact states of sub-windows of several sizes, and how rough those of many more are.
+    """Contact states of sub-windows of several sizes, and sigma_z of sub-windows of many more
+    sizes.
 
-    That of :func:`solved_windows`, and of :func:`size_effect.local_roughness.roughness_by_size`.
+    Variables are those of :func:`solved_windows` and
+    :func:`size_effect.local_roughness.roughness_by_size`.
     """
     solved = solved_windows(loading, parts, most)
     return solved.merge(roughness_by_size(loading))

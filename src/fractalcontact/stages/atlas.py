@@ -56,7 +56,8 @@ def join_stages(
 def row_of(path: Path | str, name: str) -> xr.Dataset:
     """Row of the comparison of a specimen, from an atlas of its own that :func:`join_stages` wrote.
 
-    Its attributes ``scan_checksums`` and ``versions_differ`` go into the atlas of all.
+    The attributes ``scan_checksums`` and ``versions_differ`` of the row go into the atlas of all
+    specimens.
     """
     row, attrs = read_group(path, f"comparison/{name}")
     kept = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}

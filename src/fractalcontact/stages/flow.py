@@ -36,11 +36,11 @@ _MAP = ("flow_y", "flow_x")
 
 #: Distance by which faces are moved apart to see what their fit changes, mm.
 SHIFT = 0.1
-#: The error of the mean gap over windows counts as known up to this fraction of the gap.
+#: Largest error of the mean gap over windows, as a fraction of the gap, that counts as known.
 _MAX_GAP_ERROR = 1.0
 #: Reason of a number without an interval, as the quarters alone would make it far too narrow.
 _GAP_UNKNOWN = "no interval, as the mean gap of other windows may differ by more than its value"
-#: Numbers of each way with an interval, that of the window.
+#: Numbers of each way that have an interval, that of the window.
 _WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
 #: Numbers of each way by dimension: unit, long name.
 _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {

@@ -13,9 +13,9 @@ from ..joint.joint import describe_joint
 from ..registration.registration_scatter import motion_variables, scattered_motions
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
-from ..scan.read import measure_faces, read_faces
+from ..scan.other_readings import with_other_readings
+from ..scan.read import faces_in_mm, read_faces
 from ..surface.specimen import make_specimen, window_arguments
-from .other_readings import with_other_readings
 
 
 def stages_of_scan(
@@ -40,7 +40,7 @@ def specimen_of_files(
     """
     if len(files) == 1:
         return prepare_specimen(files[0], None, options, settings, name)
-    lower, upper, given = measure_faces(files[0], files[1], options)
+    lower, upper, given = faces_in_mm(files[0], files[1], options)
     faces = grid_pair(lower, upper, given.registration, given.mirror_upper)
     specimen = _of_faces(*faces, settings, name)
     return with_other_readings(specimen, faces, (lower, upper), given, settings)

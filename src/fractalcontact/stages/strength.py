@@ -17,7 +17,7 @@ from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
 from ..statements.comparison import specimen_row
 from ..statements.judge import judge
-from ..states.model_validity import model_validity
+from ..statements.model_validity import model_validity
 from ..states.states import with_pressure
 
 

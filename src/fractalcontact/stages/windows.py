@@ -22,7 +22,7 @@ def window_stages(
 ) -> dict[str, xr.Dataset]:
     """Stages window_states and size_test, along the first direction of contact.
 
-    :func:`stages.strength.strength_stages` makes of them what no solve needs, so that a friction
+    What needs no solve is left to :func:`stages.strength.strength_stages`, so that a new friction
     angle solves nothing again.
     """
     direction = settings.contact_directions[0]

@@ -27,16 +27,16 @@ UNDER_LOAD = {
     "dilatancy": ("mm", "elastic dilatancy delta at the largest offset"),
     "size_exponent": ("1", "exponent of corrected A_r/A_0 against b at equal sigma_0"),
 }
-QUANTITIES = ONCE | UNDER_LOAD
+COMPARED_QUANTITIES = ONCE | UNDER_LOAD
 #: Group of specimens for which the study states none.
 UNGROUPED = "no group"
 #: Digits to which nominal pressures must agree that specimens are compared under one.
 _DIGITS = 4
-#: Nominal pressures of several specimens that differ by less than this fraction are one.
+#: Largest relative difference of nominal pressures of several specimens that count as one.
 ALIKE = 0.05
 
 
-def _table(prefix=(), names=QUANTITIES):
+def _table(prefix=(), names=COMPARED_QUANTITIES):
     """Variables of the quantities with the ends of their intervals, over ``prefix`` and loads."""
     return {
         of: ((*prefix, *(() if name in ONCE else ("load",))), *words)
@@ -201,7 +201,8 @@ def compared_pressures(pressures: np.ndarray) -> np.ndarray:
     return compared
 
 
-#: Of each quantity within a group: ending, words before its long name, whether in its unit.
+#: Statistics of each quantity within a group: ending, words before its long name, whether in its
+#: unit.
 _STATISTICS = {
     "_mean": "mean over specimens of ",
     "_mean_low": "lower end of the 95 % interval of the mean over specimens of ",
@@ -221,7 +222,7 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
     )
     member = rows["group"].values[:, None] == np.array(groups, dtype=object)[None, :]
     table, values = {}, {}
-    for name, (unit, words) in QUANTITIES.items():
+    for name, (unit, words) in COMPARED_QUANTITIES.items():
         dims = ("group_name",) if name in ONCE else ("group_name", "pressure")
         estimate = Estimate.read(rows, name)
         if name in UNDER_LOAD:

@@ -349,7 +349,9 @@ class OfRealisations(Evidence):
         return Estimate.read(self.stage if stage is None else stage, f"{name}_mean")
 
     def _every(self, name: str) -> np.ndarray:
-        """Loads at which every realisation has a value: else it were that of those with most."""
+        """Loads at which every realisation has a value; a mean over some would be that of those
+        with most contact.
+        """
         return self.stage[f"{name}_n"].values == self.realisations
 
     @property

@@ -239,5 +239,5 @@ def share(good: int, total: int) -> str:
 
 
 def no_offsets(needed: str) -> str:
-    """Reason why a claim is undetermined."""
+    """Reason why a claim on offsets is undetermined: there are too few."""
     return f"fewer than {needed} offsets"

@@ -57,7 +57,8 @@ def statements_for(settings: Mapping) -> tuple[str, ...]:
 
 
 def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
-    """Judge every statement of :func:`statements_for` a joint, as :func:`table_of` has it.
+    """Judgement of every statement that a joint is asked (:func:`statements_for`), as
+    :func:`table_of` has it.
 
     ``chosen_for`` of the settings names statements that the specimen was chosen for, and how.
     Attributes ``direction`` and ``force``, N.

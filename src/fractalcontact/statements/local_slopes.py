@@ -10,7 +10,7 @@ from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding
 
 #: Least local slope of boxes that are all occupied.
-FULL = 1.98
+ALL_OCCUPIED = 1.98
 
 #: Box sides whose ends have a smaller ratio show no power law.
 MIN_RATIO = 10.0
@@ -33,7 +33,7 @@ def one_slope(state: xr.Dataset) -> Finding:
     words = f"local slopes {ends} for boxes of {compact(first[0], 2)} to {compact(last[-1], 2)} mm"
     if np.max(low) - np.min(high) > 2 * LOOSELY:
         return Finding(FAILS, words)
-    if slopes.max() >= FULL and np.max(low) - np.min(high) > NEARLY:
+    if slopes.max() >= ALL_OCCUPIED and np.max(low) - np.min(high) > NEARLY:
         return Finding(FAILS, f"{words}, a crossover to a filled plane")
     spread = np.ptp(slopes)
     if spread > 2 * LOOSELY:

@@ -44,7 +44,7 @@ def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
 def state_area_sampling(state: ContactState) -> float:
     """Relative sampling error of :func:`states.state_scalars.state_area`.
 
-    0 where that is what carries the force at the hardness, which no sample changes.
+    0 where the area is that which carries the force at the hardness: no sample changes it.
     """
     yielded = state.force / float(np.max(state.hardness))
     if corrected_area(state.in_contact, state.space.spacing) <= yielded:

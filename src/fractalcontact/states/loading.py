@@ -77,11 +77,11 @@ class JointLoading(Generic[P]):
         return JointLoading(specimen, direction, cells, settings, solver)
 
     def at(self, cells: ArrayLike) -> "JointLoading[P]":
-        """The same at other offsets, in cells."""
+        """This loading at other offsets, in cells."""
         return replace(self, cells=np.atleast_1d(cells))
 
     def at_map_offset(self) -> "JointLoading[P]":
-        """The same at the offset of the contact maps alone."""
+        """This loading at the offset of the contact maps alone."""
         offset = chosen_offset(self.settings.map_offset, self.offsets)
         return self.at(self.cells[self.offsets == offset][0])
 
@@ -134,7 +134,9 @@ class JointLoading(Generic[P]):
         return composite_topography(self.specimen, self.direction, cells)
 
     def suspect_nodes(self, cells: int) -> np.ndarray:
-        """Nodes (ny, nx) bool of that topography with suspicious cells of the scans in them."""
+        """Nodes (ny, nx) bool of the composite topography with suspicious cells of the scans in
+        them.
+        """
         return suspect_nodes(self.specimen, self.direction, cells)
 
     def variant(self, name: str, cells: int) -> Variant:

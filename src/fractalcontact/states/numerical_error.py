@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 MIN_ORDER, MAX_ORDER = 0.5, 3.0
 
 #: Fraction of the extrapolation, or of the last change, that is uncertain.
-UNCERTAIN = 0.5
+UNCERTAIN_FRACTION = 0.5
 
 #: Error that may not show in the changes between spacings, as fractions of the quantity's edge
 #: part: with three spacings and with two.
@@ -60,7 +60,7 @@ def _extrapolated(values: ArrayLike) -> _Extrapolated:
     change = np.where(three, first + second + beyond, first)
     return _Extrapolated(
         change,
-        UNCERTAIN * np.abs(np.where(monotone, beyond, last)),
+        UNCERTAIN_FRACTION * np.abs(np.where(monotone, beyond, last)),
         np.where(monotone, np.abs(change), np.fmax.reduce(np.abs([first, last, change]))),
         np.where(monotone, order, np.nan),
     )
@@ -92,7 +92,7 @@ def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> 
     )
 
 
-def closure_error(
+def closure_numerical_error(
     closures: ArrayLike, separations: ArrayLike, edge: ArrayLike, rise: ArrayLike
 ) -> NumericalError:
     """Numerical error of closures (...) from first contact, mm, whose summit is known.

@@ -11,12 +11,11 @@ from ..core.settings import Load
 from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .loading import JointLoading
-from .subgrid import QUANTITIES as OF_STATES
-from .subgrid import closure_from, composite_quantities
+from .subgrid import STATE_QUANTITIES, closure_from, composite_quantities
 
 #: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
 #: seat, mm.
-QUANTITIES = (*OF_STATES, "seated_closure")
+SPREAD_QUANTITIES = (*STATE_QUANTITIES, "seated_closure")
 
 
 def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
@@ -69,8 +68,8 @@ def registration_spread(
     Returns
     -------
     dict of str to (load,) ndarray, or None
-        By :data:`QUANTITIES`, in their units. None of a specimen that holds no further motions: one
-        face, faces given in one frame, or faces that do not match.
+        By :data:`SPREAD_QUANTITIES`, in their units. None of a specimen that holds no further
+        motions: one face, faces given in one frame, or faces that do not match.
 
     Notes
     -----
@@ -79,7 +78,7 @@ def registration_spread(
     count = len(values["closure"])
     if count < 2:
         return None
-    compared = {name: values[name] for name in OF_STATES}
+    compared = {name: values[name] for name in STATE_QUANTITIES}
     compared["seated_closure"] = closure_from(values["closure"], forces, seat)
     return {
         name: t_quantile(count - 1) * of_motions.std(axis=0, ddof=1)

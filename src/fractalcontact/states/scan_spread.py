@@ -4,38 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 
 from ..core.settings import Load
+from ..scan.other_readings import other_readings
 from .loading import JointLoading
-from .subgrid import QUANTITIES, closure_from, composite_quantities
-
-#: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
-OTHER_FACES = "other_faces"
-#: Their dimension.
-READING = "reading"
-#: Suspicious cells (reading, mark, y, x) of those heights, by these variables of a specimen.
-OTHER_MARKS = "other_marks"
-MARKS = ("suspect_lower", "suspect_upper", "overlap")
-
-
-def other_readings(specimen: xr.Dataset) -> dict[str, xr.Dataset]:
-    """The specimen by each other reading of its scans; empty where it has none."""
-    if OTHER_FACES not in specimen:
-        return {}
-    names = [str(name) for name in specimen[READING].values]
-    parts = {face: specimen[OTHER_FACES].sel(face=face) for face in ("lower", "upper")}
-    if OTHER_MARKS in specimen:
-        parts |= {mark: specimen[OTHER_MARKS].sel(mark=mark) for mark in MARKS}
-    return {
-        name: specimen.assign(
-            {
-                of: specimen[of].copy(data=part.sel({READING: name}).values)
-                for of, part in parts.items()
-            }
-        )
-        for name in names
-    }
+from .subgrid import STATE_QUANTITIES, closure_from, composite_quantities
 
 
 def reading_values(
@@ -63,7 +36,7 @@ def scan_spread(
 ) -> dict[str, np.ndarray] | None:
     """Scan error: largest distance of the other readings from this one.
 
-    Not a half-width of chance: readings are few, and none is more likely than another.
+    It is no half-width of chance: readings are few, and none is more likely than another.
 
     Parameters
     ----------
@@ -75,12 +48,12 @@ def scan_spread(
     Returns
     -------
     dict of str to (load,) ndarray, or None
-        Distances by :data:`states.subgrid.QUANTITIES`, and of the closure from the seat, in their
-        units; None without another reading.
+        Distances by :data:`states.subgrid.STATE_QUANTITIES`, and of the closure from the seat, in
+        their units; None without another reading.
     """
     if len(values["closure"]) < 2:
         return None
-    compared = {name: values[name] for name in QUANTITIES}
+    compared = {name: values[name] for name in STATE_QUANTITIES}
     compared["seated_closure"] = closure_from(values["closure"], forces, seat)
     return {name: np.abs(of[1:] - of[0]).max(axis=0) for name, of in compared.items()}
 

@@ -1,6 +1,6 @@
-"""Closure of the interface: that of the window without the settlement of the blocks.
+"""Closure and stiffness of the interface: those of the window without the blocks.
 
-It lies below the laws of closure, so that a new law solves no state again.
+They lie below the laws of closure, so that a new law solves no state again.
 """
 
 from typing import Any
@@ -55,3 +55,23 @@ def interface_closure(closure: _Numbers, settlement: _Numbers, flush: Any = Fals
     if isinstance(closing, xr.DataArray):  # xr.where drops labels of coordinates
         return closing.where(~flush, 0.0)
     return np.where(flush, 0.0, closing)
+
+
+def interface_stiffness(compliance: _Numbers, bulk: _Numbers) -> Any:
+    """Stiffness of the interface alone, MPa/mm: 1/k_int = 1/k - 1/k_bulk.
+
+    Parameters
+    ----------
+    compliance : float, ndarray or xr.DataArray
+        1/k = dw/d sigma_0 of interface and blocks together, mm/MPa.
+    bulk : float, ndarray or xr.DataArray
+        1/k_bulk = w_b/sigma_0, mm/MPa, with w_b from :func:`bulk_settlement`.
+
+    Returns
+    -------
+    ndarray or xr.DataArray
+        NaN where the whole is no more compliant than the bulk: contact is so full that it answers
+        like a punch.
+    """
+    left = compliance - bulk
+    return 1 / xr.where(left > 0, left, np.nan)

@@ -12,12 +12,15 @@ from ..joint.overlap import suspect_load_share
 from .area_sampling import state_area_sampling
 from .states import SCALARS
 
+#: Reason of a stiffness that is not computed.
+NOT_WANTED = "computed at the finest resolution alone"
+
 
 def aperture(state: ContactState) -> np.ndarray:
     """Aperture (ny, nx) of a state, mm: its gap, exactly 0 in contact.
 
-    There a solved gap is within the tolerance of 0, and negative where a node at the hardness is
-    pressed in: the face has crushed by as much.
+    In contact a solved gap is within the tolerance of 0, and negative where a node at the hardness
+    is pressed in: the face has crushed by as much.
     """
     return np.where(state.in_contact, 0.0, np.maximum(state.gap, 0.0))
 
@@ -27,12 +30,13 @@ def numbers_of(
 ) -> dict[str, Any]:
     """Scalars of a contact state and their errors, stored without its fields.
 
-    :data:`states.states.SCALARS` and :data:`states.states.ERRORS`. Suspicious nodes are those of
-    :func:`joint.overlap.suspect_nodes`, none if left out. The stiffness takes more solves; it is
-    NaN where it is not wanted. Raises `NotConverged` as that does.
+    :data:`states.states.SCALARS`, :data:`states.states.ERRORS` and :data:`states.states.REASONS`.
+    Suspicious nodes are those of :func:`joint.overlap.suspect_nodes`, none if left out. The
+    stiffness takes more solves; it is NaN where it is not wanted. Raises `NotConverged` as that
+    does.
     """
     spacing, gap = state.space.spacing, aperture(state)
-    slope = state.slope if stiff else Slope(np.nan, np.nan)
+    slope = state.slope if stiff else Slope(np.nan, np.nan, reason=NOT_WANTED)
     of_domain: dict[str, Any] = {
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
@@ -46,6 +50,7 @@ def numbers_of(
         ),
         "stiffness": slope.value,
         "stiffness_scatter": slope.scatter,
+        "stiffness_reason": slope.reason,
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state, slope)
@@ -54,7 +59,7 @@ def numbers_of(
 def state_area(state: ContactState) -> float:
     """Real contact area of a state, corrected for the perimeter, mm2.
 
-    No less than what carries the force at the hardness, if there is one.
+    It is at least the area that carries the force at the hardness, if there is one.
     """
     corrected = float(corrected_area(state.in_contact, state.space.spacing))
     return max(corrected, state.force / float(np.max(state.hardness)))

@@ -38,17 +38,21 @@ SCALARS = {
 SOLVER_ERROR = "solver error bound"
 
 #: Scalars that the tolerance of the solver leaves uncertain. The force is given.
-UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
-#: Their errors: name, unit, long name.
+WITH_SOLVER_ERROR = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffness")
+#: Solver error bounds of these scalars: name, unit, long name.
 ERRORS = {
-    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
+    f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}")
+    for name in WITH_SOLVER_ERROR
 }
 #: End of the long name of the error of a stiffness; where nodes yield, its scatter is added.
 WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
 ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
+#: Reasons of missing scalars: name, unit, long name.
+REASONS = {"stiffness_reason": ("1", "why there is no stiffness dF/dw")}
+
 #: Variables of a state without its contact domain.
-STATE_VARIABLES = [*SCALARS, *ERRORS, "solved"]
+STATE_VARIABLES = [*SCALARS, *ERRORS, *REASONS, "solved"]
 
 #: Numbers kept of every offset: name, unit, long name.
 OFFSETS = {
@@ -74,7 +78,9 @@ MAP_FIELDS = (MAP_PRESSURE, MAP_GAP, OFFSET_GAP)
 
 
 def error_attrs(attrs: Mapping[str, str], kind: str = SOLVER_ERROR) -> dict[str, str]:
-    """Attributes of the solver error bound, or another, of what has these attributes."""
+    """Attributes of an error, by default the solver error bound, of a variable with these
+    attributes.
+    """
     return cf_attrs(attrs["units"], f"{attrs['long_name']}, {kind}")
 
 

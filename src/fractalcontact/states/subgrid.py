@@ -14,12 +14,14 @@ from ..core.limits import RESOLVED_NODES
 from ..joint.joint import prefractal
 from ..joint.overlap import suspect_load_share
 from .loading import JointLoading, Variant
-from .settlement import bulk_settlement, interface_closure
+from .settlement import bulk_settlement, interface_closure, interface_stiffness
 from .state_scalars import state_area
 from .sweep import load_steps
 
-#: Quantities of a state with a numerical error: unit, long name.
-QUANTITIES = {
+#: Quantities of a state with a numerical error: unit, long name. They have the names that the error
+#: budget publishes: `closure` and `stiffness` are of the interface alone, those of
+#: :data:`states.states.SCALARS` of interface and blocks together.
+STATE_QUANTITIES = {
     "closure": ("mm", "closure w_int from first touch"),
     "separation": ("mm", "separation of the mean planes, delta_r - w"),
     "area_corrected": ("mm2", "real contact area, corrected for its edge"),
@@ -95,12 +97,12 @@ def subgrid_states(
 def composite_quantities(
     loading: JointLoading, variants: Iterable[Variant], forces: np.ndarray, factor: int = 1
 ) -> dict[str, np.ndarray]:
-    """The :data:`QUANTITIES` and :data:`SOUND` (variant, load) of a joint by variants of its faces.
+    """:data:`STATE_QUANTITIES` and :data:`SOUND` (variant, load) of variants of a joint.
 
     Every ``factor``-th node is taken. The separation is max h - mean h - w: that of the mean planes
     within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
     """
-    names, rows = (*QUANTITIES, SOUND), []
+    names, rows = (*STATE_QUANTITIES, SOUND), []
     for variant in variants:
         composite = prefractal(variant.composite, factor)
         suspicious = prefractal(variant.suspicious, factor)
@@ -136,7 +138,7 @@ def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
 def state_quantities(
     state: ContactState, highest: float, reference: float = 0.0
 ) -> dict[str, float]:
-    """The :data:`QUANTITIES` of a contact state.
+    """:data:`STATE_QUANTITIES` of a contact state.
 
     ``highest`` is the largest height of its composite topography, on its own grid, ``reference``
     that at zero offset on the scan's grid, from which dilatancy counts, mm. The separation is
@@ -149,10 +151,10 @@ def state_quantities(
     area = float(np.prod(sides))
     settlement = float(bulk_settlement(state.force, space.modulus, *sides))
     stiffness = state.stiffness
-    compliance = (area / stiffness if stiffness else np.inf) - settlement / (state.force / area)
+    compliance = area / stiffness if stiffness else np.inf
     return {
         "closure": float(interface_closure(state.closure, settlement)),
         "separation": highest - reference - state.closure,
         "area_corrected": state_area(state),
-        "stiffness": 1 / compliance if compliance > 0 else np.nan,
+        "stiffness": float(interface_stiffness(compliance, settlement / (state.force / area))),
     }

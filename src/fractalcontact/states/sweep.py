@@ -26,6 +26,7 @@ from .states import (
     ERRORS,
     OFFSET_GAP,
     OFFSETS,
+    REASONS,
     SCALARS,
     chosen_offset,
     concat_directions,
@@ -58,7 +59,7 @@ def load_steps(
     solving : mapping
         Options of :func:`contact.solve.solve_contact`.
     where : str
-        What is loaded, for errors.
+        Name of the loaded specimen or window, for errors.
 
     Raises
     ------
@@ -141,12 +142,13 @@ def contact_states(
     Returns
     -------
     xr.Dataset
-        The scalars of :data:`SCALARS` with their :data:`ERRORS`, and ``solved``, over (direction,
-        offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
-        resolution k, the contact domain ``in_contact_k`` over (direction, offset, normal_force,
-        y_k, x_k). NaN, and no contact, where a state was not solved. Where the states that are
-        looked at closely are among them, those of :data:`states.states.MAP_FIELDS`, over
-        (normal_force, y_k, x_k) or, of the offsets, (offset, y_k, x_k).
+        The scalars of :data:`SCALARS` with :data:`ERRORS` and :data:`REASONS`, and ``solved``, over
+        (direction, offset, resolution, load), those of :data:`OFFSETS` over (direction, offset)
+        and, for each resolution k, the contact domain ``in_contact_k`` over (direction, offset,
+        normal_force, y_k, x_k). NaN, and no contact, where a state was not solved. Where the
+        states that are looked at closely are among them, those of
+        :data:`states.states.MAP_FIELDS`, over (normal_force, y_k, x_k) or, of the offsets,
+        (offset, y_k, x_k).
 
     Raises
     ------
@@ -159,6 +161,7 @@ def contact_states(
     forces = loading.forces(settings.loads)
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
+    scalars |= {name: np.full(shape, "", object) for name in REASONS}
     solved = np.zeros(shape, bool)
     dips = np.full((*shape, len(STEPS), PARTS), np.nan, np.float32)
     fields: dict[str, tuple] = {}
@@ -180,8 +183,8 @@ def contact_states(
                 if of_offsets is not None and j == reference:
                     of_offsets[i] = gaps[-1]
                 solved[0, i, k, j] = True
-                for one, of_step in enumerate(slopes):
-                    dips[0, i, k, j, one] = dips_by_force(state.pressure, of_step)
+                for step, of_step in enumerate(slopes):
+                    dips[0, i, k, j, step] = dips_by_force(state.pressure, of_step)
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious, stiff=stiff).items():
                     scalars[name][0, i, k, j] = value
@@ -248,7 +251,8 @@ def _labelled_states(
         "composite_spread": spread,
     }
     dims = ("direction", "offset", "resolution", "normal_force")
-    table: dict[str, tuple] = {name: (dims, *words) for name, words in (SCALARS | ERRORS).items()}
+    of_scalars = SCALARS | ERRORS | REASONS
+    table: dict[str, tuple] = {name: (dims, *words) for name, words in of_scalars.items()}
     table["solved"] = (dims, "1", "whether the state was needed, and solved")
     table |= {name: (dims[:2], *words) for name, words in OFFSETS.items()}
     return labelled_dataset(
@@ -276,9 +280,9 @@ def _exact_enough(
 ) -> ContactState:
     """The state, solved more tightly until its errors are within the requested accuracy.
 
-    They are those of the closure of the interface, which may be a small part of the whole closure,
-    and of Delta_sigma, estimated from the ambiguous nodes. Started from itself, a state is soon
-    better.
+    The errors are of the interface closure, which may be a small part of the whole closure, and of
+    Delta_sigma, estimated from the ambiguous nodes. A state that starts from itself improves within
+    few iterations.
     """
     if accuracy is None:
         return state

@@ -151,7 +151,7 @@ class Trees:
     ) -> tuple[xr.DataTree, frozenset[str], Path]:
         """Tree with the stages of a specimen, names of the groups of its file, and the file.
 
-        ``without`` leaves out stages of an atlas in parts.
+        ``without`` names stages of an atlas in parts that are not read.
         """
         if name not in self.parts:
             return self.root, self.held, self.path

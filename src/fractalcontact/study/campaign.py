@@ -10,7 +10,7 @@ from .figure_list import all_figures, figures_of
 MAX_WHOLE = 30
 #: Forms of an atlas: one file, or one file a specimen.
 WHOLE, PARTS = "whole", "parts"
-#: Words of a study for all figures and for none.
+#: Values of the key ``figures`` for all figures and for none.
 ALL, NONE = "all", "none"
 #: Key that asks for the figures over several specimens; every study of more than one has it.
 COMPARISON = "comparison"
@@ -43,6 +43,6 @@ def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]
 def of_study_alone(names: Collection[str]) -> list[str]:
     """Figures of a study that read no stage of its specimens one by one.
 
-    The atlas of all specimens lacks those stages where it is in parts.
+    An atlas in parts lacks the stages of single specimens.
     """
     return [name for name in names if "specimens" not in all_figures()[name].needs]

@@ -17,7 +17,7 @@ from .configuration import resolve_embedded, resolve_roll_off, resolve_settings,
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
 from .keys import SidecarKeys, StudyKeys
-from .measured import require_files, test_files
+from .laboratory_tests import require_files, test_files
 from .scan_files import ScanFiles, refuse_outside_link
 from .scan_groups import list_grouped
 from .sidecar import is_contact_map, read_yaml
@@ -198,7 +198,7 @@ def check_names(
     """Refuse embedded specimens whose results would be taken for others.
 
     Names must differ from each other and from those of the scans in more than upper and lower case,
-    as on many disks they would be one file, and must be possible for a scan too.
+    because on many disks they would be one file, and a scan must be able to have such a name.
     """
     taken: dict[str, tuple[str, str | None]] = {
         name.lower(): (name, f"a scan in {folder}") for name in scans

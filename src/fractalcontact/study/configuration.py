@@ -20,7 +20,7 @@ from .keys import (
     stated,
     unsaid_settings,
 )
-from .measured import resolve_tests
+from .laboratory_tests import resolve_tests
 from .scan_files import ScanFiles
 from .selection import BESIDE_SURFACE, is_capped_variant
 

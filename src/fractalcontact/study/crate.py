@@ -74,9 +74,9 @@ class Workflow:
     Attributes
     ----------
     folder : pathlib.Path
-        Its checkout, with CITATION.cff.
+        Folder of the checkout, with CITATION.cff.
     main : str
-        Its main file, in that folder.
+        Main file of the workflow, in that folder.
     parts : tuple of str
         Patterns of its other files there.
     language, url, version : str
@@ -139,7 +139,7 @@ def _copied(results: Path, workflow: Workflow) -> list[str]:
 
 
 def _refer(names: Iterable[str]) -> list[dict[str, str]] | dict[str, str]:
-    """References to entities; one alone is no list."""
+    """References to entities: a list, or the reference itself where there is one entity."""
     references = [{"@id": name} for name in names]
     return references[0] if len(references) == 1 else references
 

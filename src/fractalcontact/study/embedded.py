@@ -1,6 +1,6 @@
 """Embedded specimens: synthetic surfaces of a study, written as ordinary scan files.
 
-They are read like measured surfaces. Their heights are those of :mod:`surface.embedded`.
+The files are read like measured surfaces. Heights come from :mod:`surface.embedded`.
 """
 
 from pathlib import Path

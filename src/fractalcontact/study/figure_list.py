@@ -4,18 +4,18 @@ A figure registers itself: its module ``PACKAGE/figures/GROUP/NAME.py`` states, 
 begins with the constant's name and holds literals alone,
 
 ``TITLE``
-    What it shows, for the report.
+    Title of the figure, for the report.
 ``SUBJECT``
-    Of what it is drawn: "specimen" for every specimen, "joint" for those that slide, "study" for
+    Subject: "specimen" for every specimen, "joint" for those that slide, "study" for
     a study as a whole.
 ``NEEDS``
     Stages of the atlas that it reads.
 ``ORDER``
-    Its place among the others of the same subjects.
+    Place among the figures of the same subjects.
 ``KEY``
-    Of a study alone: the key of the configuration that asks for it.
+    Key of the configuration that asks for the figure; of figures of a study alone.
 ``SECTION``
-    Of the result page, where the stages it reads do not say it; may be left out.
+    Section of the result page, where it does not follow from the stages; may be left out.
 
 The constants are read without importing the module, which would bring matplotlib and xarray into
 every process that reads the workflow.

@@ -20,7 +20,7 @@ def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
     listed = results / "specimens.txt"
     if listed.is_file():
         had = set(listed.read_text(encoding="utf-8").split())
-    else:  # of an earlier version, or damaged: those of which anything is there
+    else:  # without a list, a specimen with any file counts
         stages = [place / stage for place in places for stage in ("specimens", "contact_maps")]
         had = {path.stem for stage in stages for path in stage.glob("*.nc")}
     lost = sorted(had - set(names))

@@ -1,4 +1,4 @@
-"""Keys of a sidecar that would change nothing. They were meant to, so they are refused."""
+"""Keys of a sidecar that would change nothing. Their writer meant a change, so they are refused."""
 
 from collections.abc import Iterator, Mapping, Sequence
 

@@ -25,7 +25,7 @@ from ..core.settings import Settings
 from ..core.tolerance import ACCURACY
 from ..core.units import share_of
 from ..scan.keys import ScanKeys
-from .measured_keys import Tests
+from .laboratory_keys import Tests
 from .scan_files import LONGEST_NAME
 
 #: Seed of random numbers; results store it in eight bytes.

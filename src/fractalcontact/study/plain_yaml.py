@@ -13,7 +13,7 @@ import yaml
 
 from ..core.errors import InputError
 
-MAX_DEPTH = 20  # lists within mappings within ...
+MAX_DEPTH = 20  # nested lists or mappings
 _MAX_DIGITS = 18  # of an integer; a longer one is a number like any other
 
 _STANDARD = "tag:yaml.org,2002:"
@@ -100,7 +100,7 @@ class _Loader(yaml.SafeLoader):
 
 
 class _AnchorLoader(_Loader):
-    """The same loader with anchors, aliases and merged mappings."""
+    """:class:`_Loader` with anchors, aliases and merged mappings."""
 
     allows_anchors = True
 

@@ -17,7 +17,7 @@ from ..core.units import quantity
 #: Least megabytes and minutes that a job asks for. The interpreter, its libraries and two processes
 #: of Snakemake start before the first second of work, on a busy file system.
 MIN_MEMORY, MIN_TIME = 300, 5
-#: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
+#: Megabytes of the two processes of Snakemake that start the script of a job on a cluster.
 AROUND = 280
 #: Requested memory and time over those of the models: other computers are slower, and the cost of
 #: contact differs between surfaces.
@@ -26,7 +26,7 @@ ROOM, ROOM_OF_TIME = 1.6, 5.0
 
 @dataclass(frozen=True)
 class Cost:
-    """Resources of the job of a rule: ``start`` and ``seconds`` whatever its grid is.
+    """Resources of the job of a rule: ``start`` and ``seconds`` do not depend on its grid.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Cost:
         Megabytes.
     bytes_per_node : float
     seconds : float
-        Of the clock on a core of its own.
+        Seconds of the clock on a core of its own.
     us_per_node : float
         Microseconds.
     state : float
@@ -68,8 +68,8 @@ COSTS = {
     "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
-#: The analysis solves some states again on finer grids: times as many nodes, most nodes, and bytes
-#: of each node.
+#: Nodes of the finer grids on which the analysis solves states again, over those of the scan; most
+#: nodes of such a grid; and bytes of each node.
 FINER, MAX_FINER, OF_FINER = 16, 1024**2, 320
 
 #: Bytes of memory for each byte of a file of plain numbers. 12 million points x, y, z (315 MB as

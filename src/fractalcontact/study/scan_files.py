@@ -178,7 +178,8 @@ def _is_left_behind(name: str) -> bool:
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
     """Two files named like faces of one joint but in another form, and their right names.
 
-    Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
+    Examples are ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and
+    ``rock-top.x3p``.
     """
     spelled = {name.lower(): name for name in names}
     for name in names:
@@ -295,7 +296,7 @@ def _without_scan(sidecar: Path) -> InputError:
 
 
 def refuse_outside_link(path: Path, folder: Path) -> None:
-    """Refuse links out of a folder, through which untrusted folders would have other files read."""
+    """Refuse links out of a folder: an untrusted folder could otherwise have other files read."""
     try:
         target = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python

@@ -16,17 +16,16 @@ _TREATED = {
     "mask": "made missing",
     "fill": "filled, with lone spikes and deep overlaps",
 }
-#: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
-#: minority that can be set aside; this many must be present that some remain.
+#: Side, in cells, of the square with which a cell is compared, and fewest cells present in it: a
+#: cluster of 3 x 3 spikes is then a minority that can be set aside, and some cells remain.
 _SIDE = 7
 _LARGEST_CLUSTER = 9
 _FEWEST = 25
-#: A spike stands out by more than this many times the typical deviation of a cell from the median
-#: of its surroundings. Self-affine surfaces with H from 0.3 to 1 do so in fewer than one of 10^5
-#: cells.
+#: Least distance of a spike, in typical distances of a cell from the median of its surroundings.
+#: Self-affine surfaces with H from 0.3 to 1 have such cells in fewer than one of 10^5.
 _MANY_DEVIATIONS = 8.0
-#: ... and by more than this many times the relief of its own surroundings: rough rock has patches
-#: far rougher than the rest, with honest steps.
+#: Least distance of a spike in reliefs of its own surroundings: rough rock has patches far rougher
+#: than the rest, with honest steps.
 _MANY_RELIEFS = 3.0
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
 
@@ -81,8 +80,8 @@ def clean_faces(
         for cells in (overlap, deep)
     )
     sparse = [_sparse(scan) for scan in scans]
-    each = zip(outlying, suspects.spikes, filled, sparse, strict=True)
-    suspicious = [np.logical_or.reduce([*cells, deep]) for cells in each]
+    marks = zip(outlying, suspects.spikes, filled, sparse, strict=True)
+    suspicious = [np.logical_or.reduce([*cells, deep]) for cells in marks]
     cells = {
         "outlier": np.logical_or.reduce(outlying),
         "spike": np.logical_or.reduce(suspects.spikes),
@@ -167,11 +166,11 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
 
 
 def _surroundings(z: np.ndarray, present: np.ndarray):
-    """For each present cell: how far it is from the median of its surroundings, how far it stands
-    out of all but the extreme cells, and the range of those; NaN where too few cells are present.
+    """Distance of each present cell from the median of its surroundings, its distance beyond all
+    but their extreme cells, and the range of those; NaN where too few cells are present.
     """
     windows = np.lib.stride_tricks.sliding_window_view(z, (_SIDE, _SIDE))
-    found = np.full((3, np.count_nonzero(present)), np.nan)
+    surroundings = np.full((3, np.count_nonzero(present)), np.nan)
     start = 0
     for strip in strips(z.shape, _SIDE**2):
         rows, columns = np.nonzero(present[strip])
@@ -188,13 +187,13 @@ def _surroundings(z: np.ndarray, present: np.ndarray):
         own = z[rows, columns][judged]
         low, high = ordered[judged, _LARGEST_CLUSTER], ordered[judged, count - 1 - _LARGEST_CLUSTER]
         median = (ordered[judged, (count - 1) // 2] + ordered[judged, count // 2]) / 2
-        found[:, start + judged] = (
+        surroundings[:, start + judged] = (
             np.abs(own - median),
             np.maximum(own - high, low - own),
             high - low,
         )
         start += len(rows)
-    return found
+    return surroundings
 
 
 def fill_holes(
@@ -249,10 +248,10 @@ def _harmonic(heights: np.ndarray, unknown: np.ndarray, spacing) -> np.ndarray:
     entries = [(np.full(len(rows), 2 * sum(weights)), index[unknown], index[unknown])]
     for step_y, step_x in ((-1, 0), (1, 0), (0, -1), (0, 1)):
         weight = weights[0 if step_y else 1]
-        beside = (rows + step_y, columns + step_x)
-        known = ~unknown[beside]
-        right[known] += weight * (heights[beside][known] - level)
-        equation, neighbour = np.flatnonzero(~known), index[beside][~known]
+        neighbours = (rows + step_y, columns + step_x)
+        given = ~unknown[neighbours]
+        right[given] += weight * (heights[neighbours][given] - level)
+        equation, neighbour = np.flatnonzero(~given), index[neighbours][~given]
         entries.append((np.full(len(equation), -weight), equation, neighbour))
     values, equation, neighbour = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     matrix = sparse.csc_array((values, (equation, neighbour)), shape=(len(rows), len(rows)))

@@ -1,7 +1,6 @@
 """Heights of embedded specimens: synthetic surfaces by their recipes.
 
-They are twins of specimens that are described but whose scans are not public, or mathematical
-joints.
+Embedded specimens are twins of specimens whose scans are not public, or mathematical joints.
 """
 
 from collections.abc import Callable, Mapping
@@ -65,7 +64,7 @@ def _without_roll_off(make: Callable[..., np.ndarray]) -> Callable[..., np.ndarr
 def _cantor_punch(shape: tuple[int, int], recipe: Mapping) -> np.ndarray:
     """Extruded punch of two parts and three nodes a generation, with Delta_g of ``recipe``.
 
-    That of the profile is 1 + ln(2/lowering)/ln 3, see
+    The dimension of the profile is 1 + ln(2/lowering)/ln 3, see
     :func:`surface.known_dimension.cantor_punch`.
     """
     lowering = 2 / 3 ** (recipe["dimension"] - 2)

@@ -1,4 +1,4 @@
-"""A specimen: one or two levelled faces on one grid, and the window the study looks through."""
+"""Specimen: one or two levelled faces on one grid, and the window of the study."""
 
 import json
 import math
@@ -183,7 +183,7 @@ def _mean_plane(scans, valid: np.ndarray, *, level: bool) -> tuple[np.ndarray, d
     offset = height - slope_x * x_mean - slope_y * y_mean
     tilt = math.degrees(math.atan(math.hypot(slope_x, slope_y)))
     of = "the scanned face" if len(scans) == 1 else "the mean of both faces, subtracted from both"
-    # Below it is rounding: of faces that had no tilt.
+    # Smaller tilts are the rounding of faces that had none.
     tilted = f"{tilt:.3g}" if tilt > 1e-6 else "below 1e-6"
     sentence = f"least-squares plane of {of}, over the cells present in all; tilt {tilted} degrees"
     if tilt > STEEP_TILT:

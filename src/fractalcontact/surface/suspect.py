@@ -8,20 +8,20 @@ import xarray as xr
 
 from ..core.strips import blocks, strips
 
-#: A lone spike stands off the median of its eight neighbours by this many times what cells around
-#: it do, typically. On self-affine Gaussian surfaces with H from 0.2 to 0.8 none of 160 000 cells
-#: comes to 6.
+#: Least distance of a lone spike from the median of its eight neighbours, in typical distances of
+#: the cells around it. On self-affine Gaussian surfaces with H from 0.2 to 0.8 none of 160 000
+#: cells comes to 6.
 ALONE = 8.0
-#: ... or by this many times, where the other face says so: it overlaps there, or the gap stands off
-#: its surroundings as much.
+#: The same distance of a spike that the other face confirms: it overlaps there, or the gap stands
+#: off its surroundings as much.
 CONFIRMED = 4.0
-#: An overlap is deep where its depth, and how far the gap falls below the median of its eight
-#: neighbours, exceed this many times what is typical: no error of the registration or of the mean
-#: gap, which neighbours share, makes it.
+#: Least depth of a deep overlap, and least fall of the gap below the median of its eight
+#: neighbours, in typical values: an error of the registration or of the mean gap, which neighbours
+#: share, makes no such fall.
 DEEP = 3.0
-#: A cell with fewer neighbours, or fewer cells around it, is not judged.
+#: Fewest neighbours, and fewest cells around, of a cell that is judged.
 _MIN_NEIGHBOURS, _MIN_AROUND = 5, 12
-_HALF = 3  # cells around: 7 x 7 but the one in the middle
+_HALF = 3  # cells to each side: the square around a cell is 7 x 7
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
 #: Rounding of equal heights, as a fraction of the largest.
 _ROUNDING = 1e-12
@@ -49,10 +49,10 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
     deviations in the 7 x 7 around, at least that of the whole scan), or by more than 4 times where
     the other face confirms it: both cannot have been there.
     """
-    found = [stand_off(scan.values) for scan in scans]
-    spikes = [abs(ratio) > ALONE for ratio in found]
+    ratios = [stand_off(scan.values) for scan in scans]
+    spikes = [abs(ratio) > ALONE for ratio in ratios]
     empty = np.zeros(scans[0].shape, dtype=bool)
-    towards = [sign * ratio for sign, ratio in zip((1, -1), found, strict=False)]
+    towards = [sign * ratio for sign, ratio in zip((1, -1), ratios, strict=False)]
     if len(scans) == 1:
         return Suspects(spikes, empty, empty, towards)
     gap = scans[1].values - scans[0].values
@@ -71,7 +71,7 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
 
 
 def height_is_known(upper: xr.DataArray) -> bool:
-    """True if the mean gap was measured; else the upper face was set down until some cells touch.
+    """True if the mean gap was measured; else the upper face was lowered until some cells touch.
 
     The attribute ``registration`` of :func:`registration.pairs.register` tells, if there is one.
     """
@@ -114,12 +114,12 @@ def typical_deviation(heights: np.ndarray) -> float:
 
 
 def _typical(deviation: np.ndarray, heights: np.ndarray) -> float:
-    known = abs(deviation[np.isfinite(deviation)])
-    if not known.size:
+    sizes = abs(deviation[np.isfinite(deviation)])
+    if not sizes.size:
         return 0.0
     levels = np.unique(heights[np.isfinite(heights)])
     step = float(np.median(np.diff(levels))) if levels.size > 1 else 0.0
-    return max(_NORMAL * float(np.median(known)), step)
+    return max(_NORMAL * float(np.median(sizes)), step)
 
 
 def _deviation(z: np.ndarray) -> np.ndarray:
@@ -156,11 +156,11 @@ def overlap_statistics(
     overlap = specimen["overlap"].values
     rows = []
     for place in ((slice(None), slice(None)), window):
-        known = np.isfinite(gap[place])
+        both = np.isfinite(gap[place])
         cells = int(overlap[place].sum())
         depth = float(-gap[place][overlap[place]].min()) if cells else 0.0
-        here = gap[place][known]
-        mean, spread = (here.mean(), here.std()) if here.size else (np.nan, np.nan)
-        rows.append((cells, cells / max(here.size, 1), depth, float(mean), float(spread)))
+        gaps = gap[place][both]
+        mean, spread = (gaps.mean(), gaps.std()) if gaps.size else (np.nan, np.nan)
+        rows.append((cells, cells / max(gaps.size, 1), depth, float(mean), float(spread)))
     keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
     return dict(zip(keys, zip(*rows, strict=True), strict=True))

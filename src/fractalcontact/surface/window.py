@@ -16,7 +16,7 @@ from ..core.limits import SMALLEST_SIDE
 from ..core.text import percent
 from ..core.window import spacing_of
 
-#: A side given in mm holds a whole number of cells within this fraction of one.
+#: Fraction of a cell within which a side given in mm holds a whole number of cells.
 _ROUNDING = 1e-6
 #: Percent of the holes that the proposed key fills.
 _MOST_HOLES = 99.9
@@ -47,7 +47,7 @@ class _Wanted(NamedTuple):
 
     cells: tuple[int, ...]
     sides: tuple[float, ...]
-    """mm."""
+    """Sides of the window, mm."""
     middle: tuple[float, ...]
     reach: float | Mapping[str, float]
 
@@ -106,7 +106,7 @@ def _half_of_largest_square(specimen) -> _Wanted:
     part = 2 if slides(specimen.attrs["opposite"]) else 1
     cells = tuple(n // part for n in square)
     sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
-    return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
+    return _Wanted(cells, sides, middle, 0.0)  # the outer quarter of the square lies all around
 
 
 def _larger(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
@@ -271,7 +271,7 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
     def cells(n: int) -> tuple[int, int]:
         return tuple(math.floor(n * pixel / s + _ROUNDING) for s in spacing)
 
-    fits = 1  # one cell is free, or there would be no plane
+    fits = 1  # at least one cell is free, as the face has a plane
     too_large = 1 + min(
         math.floor(n * s / pixel + _ROUNDING) for n, s in zip(valid.shape, spacing, strict=True)
     )
@@ -296,7 +296,7 @@ def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[s
 
 
 def _no_place(specimen, shape) -> InputError:
-    """Obstacle of a window, and the window that would fit."""
+    """Error of a window without a place: the obstacle, and the window that would fit."""
     valid, spacing = specimen["valid"].values, spacing_of(specimen)
     rows, columns = np.nonzero(~valid)
     y, x = specimen.y.values, specimen.x.values

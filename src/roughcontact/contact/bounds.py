@@ -85,8 +85,8 @@ class Bounds:
     def coarser(self, shape: tuple[int, int]) -> "Bounds":
         """Bounds on the grid twice as coarse as one of a ``shape``.
 
-        In units of the fine grid a pressure displaces cells twice as wide twice as much: its number
-        is doubled there. A cell carries the sum of its nodes.
+        In units of the fine grid a pressure on cells twice as wide displaces them twice as much, so
+        that the coarse grid doubles its number. A coarse cell carries the sum of its nodes.
         """
         if self.uniform:
             return Bounds(2 * self.lower, 2 * self.upper)

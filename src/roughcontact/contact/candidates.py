@@ -51,8 +51,8 @@ MARGIN = 1.01
 #: the closure of another load, in proportion to the force, which rises faster than the closure; or
 #: FURTHER times the closure of a solution beyond the bound.
 GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
-#: A load step is restricted only if an application is this many times cheaper, since coarser grids
-#: speed up a load step on the whole window.
+#: Least ratio by which an application is cheaper on candidates of a load step that is restricted to
+#: them, since coarser grids speed up a load step on the whole window.
 STEP_GAIN = 2.0
 #: Largest fraction of the nodes for which the cost of the operator is estimated at all.
 MAX_CANDIDATES = 0.15

@@ -242,7 +242,7 @@ def _ridged_inverse(matrix):
 
 @njit(cache=True, fastmath=True)
 def _combined(matrix, values):
-    """matrix' values."""
+    """Product of the transposed matrix and the values."""
     out = np.zeros(matrix.shape[1], np.float32)
     for i in range(values.size):
         for j in range(out.size):

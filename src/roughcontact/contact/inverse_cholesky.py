@@ -70,7 +70,7 @@ class InverseCholesky:
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
         self._offsets, self._widths = _block_grid(*space.shape, self._shifts)
-        # Everything that belongs to one set is replaced in one assignment, or not at all.
+        # All fields of one set are replaced in one assignment, or not at all.
         representative, slot, *_ = self._empty_window()
         self._known = representative, np.empty(0, np.int32), slot, _empty_factor(0)
         self._spare: tuple[np.ndarray, ...] | None = None
@@ -284,7 +284,7 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
             for bx in range(max(block_x - reach, 0), min(block_x + reach + 1, widths[k, 1])):
                 other = representative[row + bx] - 1
                 above = level[max(other, 0)]
-                # Written first and counted only if it precedes: faster than a branch.
+                # Stored first and counted only if the node precedes: this is faster than a branch.
                 members[n] = other
                 n += (other >= 0) & ((above > k) | ((above == k) & (other < node)))
         count[i] = n

@@ -238,13 +238,14 @@ class _Path:
         if by_force:
             return solve_contact(*case, force=load, start=start, rtol=self.rtol, hardness=bound)
         reach = load - self.lowered
-        at = max(reach, 0.0)
-        contact = solve_contact(*case, closure=at, start=start, rtol=self.rtol, hardness=bound)
+        closure = max(reach, 0.0)
+        options = {"start": start, "rtol": self.rtol, "hardness": bound}
+        contact = solve_contact(*case, closure=closure, **options)
         return replace(contact, gap=contact.gap - reach, closure=reach) if reach < 0 else contact
 
 
 def _branch_state(branch, contact, closure, held, yielded, hardness):
-    """State with the earlier permanent set and its own."""
+    """State of a branch with the permanent set held before and the set it makes itself."""
     at_limit = contact.pressure >= contact.hardness
     return BranchState(
         branch=branch,

@@ -61,7 +61,8 @@ class Preconditioner:
         check_nodes(nodes, self._shape)
         self._exact = None
         if fresh and self._coarse is not None:
-            # Also before a set of few nodes, which does not need it yet.
+            # The coarse correction is forgotten even before a set of few nodes, which does not need
+            # it yet.
             self._coarse.forget()
         if nodes.size <= DIRECT:
             # The few nodes of a large window may be further apart than the table reaches.

@@ -21,7 +21,8 @@ CLIPPING_PASSES = 20
 # Tolerance of the total, in free windows and in repeated ones, where clearances are a larger part
 # of the closure.
 TOTAL, REPEATED_TOTAL = 1e-7, 1e-12
-# Least effect of the closure on a node's pressure in that search, as a fraction of the mean.
+# Least effect of the closure on a node's pressure in the search for that closure, as a fraction of
+# the mean.
 MIN_RESPONSE = 1e-2
 # Residual of the stiffness equations; the stiffness errs by its second order.
 TANGENT_RESIDUAL = 1e-4

@@ -23,8 +23,8 @@ from .projected_cg import stiffness
 # Iterations after which the set may be cycling: seen on combs and checkerboards under a given
 # force, and once in 2,000 random problems under a given closure.
 PATIENCE = 30
-# Under a given force it certainly cycles if a violation is still of the order of the closure after
-# STALL iterations: a spike and its neighbours take the load from each other.
+# Iterations under a given force, and the violation, as a fraction of the closure, beyond which the
+# set is cycling: a spike and its neighbours take the load from each other.
 STALL, STALLED_VIOLATION = 15, 0.5
 # Most closures tried for one force; Newton's method needs about five.
 MAX_CLOSURES = 50

@@ -11,8 +11,13 @@ from ..limits import RESOLVED_NODES
 #: Half the span of a secant: HALF_SPAN of the closure, or HALF_SPAN_OF_NODES times the closure from
 #: first touch of a node to its hardness, if that is more; at most MAX_HALF_SPAN of the closure.
 HALF_SPAN, HALF_SPAN_OF_NODES, MAX_HALF_SPAN = 0.02, 4.0, 0.25
-#: Tolerance of the two states at its ends.
+#: Tolerance of the two states at the ends of the secant.
 SECANT_RTOL = 1e-5
+
+#: Reasons why a branch has no slope.
+NO_SECANT = "solved by another method, of which there is no secant"
+ALL_YIELDED = "the whole window carries its hardness"
+FEW_CELLS = f"too few contacts (under {RESOLVED_NODES}) carry the change of the force"
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     dp.
     """
     if solve_contact is None:
-        return Slope(np.nan, np.nan, 0.0, "solved by another method, of which there is no secant")
+        return Slope(np.nan, np.nan, 0.0, NO_SECANT)
     space, hardness = state.space, state.hardness
     own = float(space.influence()[0, 0]) * space.cell / space.modulus
     of_nodes = HALF_SPAN_OF_NODES * float(np.min(hardness)) * own
@@ -73,11 +78,10 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     change = (high.pressure - low.pressure) * space.cell_area
     total, scatter = float(change.sum()), float(np.sqrt((change**2).sum()))
     if not total > 0:
-        return Slope(np.nan, np.nan, 0.0, "the whole window carries its hardness")
+        return Slope(np.nan, np.nan, 0.0, ALL_YIELDED)
     cells = (total / scatter) ** 2
     if cells < RESOLVED_NODES:
-        reason = f"the force changes on {cells:.1f} cells, fewer than {RESOLVED_NODES}"
-        return Slope(np.nan, np.nan, cells, reason)
+        return Slope(np.nan, np.nan, cells, FEW_CELLS)
     value = total / (2 * half)
     solved = SECANT_RTOL * state.closure / half
     return Slope(value, value * (scatter / total + solved), cells)

@@ -5,7 +5,7 @@ import pytest
 from rough_surfaces import self_affine
 
 from roughcontact.contact.path import load_path
-from roughcontact.contact.slope import SECANT_RTOL, secant_slope
+from roughcontact.contact.slope import ALL_YIELDED, FEW_CELLS, SECANT_RTOL, secant_slope
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.limits import RESOLVED_NODES
@@ -93,6 +93,7 @@ def test_slope_is_never_negative_and_missing_with_its_reason(seed):
             if slope.reason:
                 assert np.isnan([slope.value, slope.error]).all()
                 assert slope.cells < RESOLVED_NODES
+                assert slope.reason == (FEW_CELLS if slope.cells else ALL_YIELDED)
                 missing += 1
             else:
                 assert slope.value > 0

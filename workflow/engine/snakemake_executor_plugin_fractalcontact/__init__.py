@@ -59,7 +59,9 @@ class Executor(RealExecutor):
         # One thread at a time starts or joins a process, because `multiprocessing` looks at all
         # others whenever it starts one.
         self.one_by_one = threading.Lock()
-        self.pool = ThreadPoolExecutor(self.cores + 5)  # as many as Snakemake's own has
+        self.pool = ThreadPoolExecutor(
+            self.cores + 5
+        )  # as many threads as Snakemake's own executor has
 
     def run_job(self, job):
         """Start a job; a thread waits for its end and reports it to the scheduler."""
@@ -83,7 +85,7 @@ class Executor(RealExecutor):
         with self.one_by_one, _environment(_threads(1) | MEMORY):
             if not TOLD.is_set():
                 process.start()
-        if TOLD.is_set():  # meanwhile, and the signal to end may have come before the process
+        if TOLD.is_set():  # the signal to end may have come before the process started
             if process.pid is None:
                 return -signal.SIGTERM
             process.terminate()

@@ -28,4 +28,4 @@ for name in LATER:
     importlib.import_module(name)
 load_cached()
 gc.collect()
-gc.freeze()  # what is loaded stays, and forks share it: none is to go through it
+gc.freeze()  # loaded modules stay and forks share them: the collector is not to visit them

@@ -56,16 +56,18 @@ class LogHandler(LogHandlerBase):
     writes_to_file = needs_rulegraph = False
 
     def __post_init__(self):
-        """Begin without any job."""
+        """Start with empty tables of jobs."""
         self.results = os.environ.get(RESULTS, "results")
         self.dry_run, self.begin = self.common_settings.dryrun, time.time()
-        #: By number of job: title, logs and reason; start of running jobs; titles of failed ones.
+        #: Jobs by number: title, logs and reason; start of running jobs; titles of failed ones.
         self.jobs, self.running, self.failed = {}, {}, {}
         self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
         self.nothing = self.stopped = self.closed = False
         self.out, self.err = sys.stdout, sys.stderr
         for stream in (self.out, self.err):
-            stream.reconfigure(errors="backslashreplace")  # names of specimens are in any script
+            stream.reconfigure(
+                errors="backslashreplace"
+            )  # names of specimens may be in any alphabet
 
     def emit(self, record):
         """Take in one event of Snakemake."""
@@ -93,7 +95,7 @@ class LogHandler(LogHandlerBase):
     def _job_started(self, record):
         for number in record.jobs:
             self.running[number] = time.time()
-            self.failed.pop(number, None)  # on a cluster, begun again with more memory
+            self.failed.pop(number, None)  # a cluster starts the job again with more memory
 
     def _job_finished(self, record):
         if self.dry_run or record.job_id not in self.jobs:
@@ -162,7 +164,7 @@ class LogHandler(LogHandlerBase):
         elif _is_full(self.errors):
             self._say("error: .snakemake: no space left on its disk; make room there", self.err)
         elif self.errors:
-            self._say(f"error: {self.errors[0]}", self.err)  # later ones only say that it failed
+            self._say(f"error: {self.errors[0]}", self.err)  # later ones repeat that it failed
         elif self.nothing or (self.dry_run and not self.jobs):
             self._say("nothing to do: everything there is, is up to date")
         elif self.dry_run:
@@ -220,7 +222,7 @@ def _cut(text, width):
 
 
 def _took(begin):
-    """Time since then in words: 8 s, 2 min 10 s, 3 h 5 min."""
+    """Time since a start in words: 8 s, 2 min 10 s, 3 h 5 min."""
     seconds = round(time.time() - begin)
     minutes, hours = seconds // 60, seconds // 3600
     if seconds < 100:

@@ -13,7 +13,7 @@ from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.ticks import powers_of_ten
 from fractalcontact.figures.kit.titles import letter
 
-from ...accuracy.convergence import QUANTITIES
+from ...accuracy.convergence import PROBLEM_QUANTITIES
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
 SUBJECT = "study"
@@ -29,12 +29,14 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure = Figure(figsize=(WIDTH, 3.6))
     panels = figure.subplots(1, 3)
     panels[1].sharey(panels[0])
-    groups = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
+    groups = {problem: group(atlas, "convergence", problem) for problem in PROBLEM_QUANTITIES}
     trials = group(atlas, "convergence", "richardson")
     tables = [rows(trials, "error", "bar", "finest", problem="richardson")]
     for axes, (problem, result) in zip(panels, groups.items(), strict=False):
-        _draw_errors(axes, result, QUANTITIES[problem])
-        named = [f"{name}_{of}" for name in QUANTITIES[problem] for of in ("error", "order")]
+        _draw_errors(axes, result, PROBLEM_QUANTITIES[problem])
+        named = [
+            f"{name}_{of}" for name in PROBLEM_QUANTITIES[problem] for of in ("error", "order")
+        ]
         tables.append(rows(result, *named, problem=problem))
     _draw_trials(panels[2], trials)
     for axes, which, title in zip(panels, "abc", _TITLES, strict=True):
@@ -60,10 +62,10 @@ def _draw_errors(axes, result, quantities):
 def _draw_trials(axes, trials):
     cases = trials.sizes["case"]
     for i, name in enumerate(trials["quantity"].values):
-        one = trials.sel(quantity=name)
+        of_quantity = trials.sel(quantity=name)
         style = {"ls": "none", "marker": MARKERS[i], "ms": 2, "color": colour_of(i)}
-        label = f"{name}: {int(one['within'])} of {cases}"
-        axes.plot(one["bar"], one["error"], label=label, **style)
+        label = f"{name}: {int(of_quantity['within'])} of {cases}"
+        axes.plot(of_quantity["bar"], of_quantity["error"], label=label, **style)
     ends = [float(trials["bar"].min()), float(trials["bar"].max())]
     axes.plot(ends, ends, color="0.5", lw=0.8)
     axes.set_ylim(bottom=1e-3 * ends[0])
@@ -76,7 +78,7 @@ def _numbers(found, trials):
     orders = [
         f"{problem} {Estimate.read(result, 'force_order', scale=EXPONENT).text()}"
         for problem, result in found.items()
-        if "force" in QUANTITIES[problem]
+        if "force" in PROBLEM_QUANTITIES[problem]
     ]
     cases = trials.sizes["case"]
     within = {

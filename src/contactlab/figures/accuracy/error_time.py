@@ -92,7 +92,7 @@ def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
         "below": f"{LEADS_BELOW:g}",
         "problems": len(scenes),
         "leads": leads,
-        "models": sum(bool((found["kind"] == MODEL).any()) for found in ahead),
+        "models": sum(bool((solvers["kind"] == MODEL).any()) for solvers in ahead),
         "alike": max(scene.attrs["resolvable_error"] for scene in scenes.values()),
         "threads": first.attrs["threads"],
     }

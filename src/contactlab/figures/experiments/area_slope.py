@@ -43,8 +43,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
     panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h′_\mathrm{rms}/p$ (1)")
     shown, count = entries(panels[0]), len(_KAPPAS)
-    each = heading(f"a line for each of {slopes.sizes['seed']} surfaces; no intervals")
-    legends_below(figure, [each, *shown[:count]], shown[count:])
+    of_lines = heading(f"a line for each of {slopes.sizes['seed']} surfaces; no intervals")
+    legends_below(figure, [of_lines, *shown[:count]], shown[count:])
     nodes, dimension = slopes.attrs["nodes"], slopes.attrs["dimension"]
     figure.suptitle(
         rf"synthetic surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}",
@@ -73,15 +73,15 @@ def _draw_surfaces(axes, chosen):
 
 def _counts(slopes):
     """Ranges of the corrected kappa, and counts between theories and in the literature."""
-    found = {"ranges": {}, "between": {}}
+    corrected_kappas = {"ranges": {}, "between": {}}
     for kind in _TITLES:
         chosen = slopes.sel(surface=kind)
         low, high = (chosen.attrs[f"{name}_kappa"] for name in _THEORIES)
         corrected = chosen["corrected_kappa"].values
-        found["ranges"][kind] = float(corrected.min()), float(corrected.max())
+        corrected_kappas["ranges"][kind] = float(corrected.min()), float(corrected.max())
         within, n = int(np.sum((corrected >= low) & (corrected <= high))), corrected.size
-        found["between"][kind] = "all" if within == n else f"{within} of {n}"
+        corrected_kappas["between"][kind] = "all" if within == n else f"{within} of {n}"
     corrected, (low, high) = slopes["corrected_kappa"].values, slopes.attrs["computed_kappa"]
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
     counts = {"below": below, "above": above, "within": corrected.size - below - above}
-    return found | counts | {"computed": (low, high)}
+    return corrected_kappas | counts | {"computed": (low, high)}

@@ -27,7 +27,7 @@ ORDER = 7
 
 #: Contact and its bearing-area cut: words, marker, line, factor of their places.
 _STYLES = (("elastic contact", "o", "-", 1.04), ("bearing-area cut", "s", "--", 0.96))
-#: Variables of both on the self-affine surfaces, and on each construction.
+#: Variables of the contact and of its cut on the self-affine surfaces, and on each construction.
 _SELF_AFFINE, _CONSTRUCTED = ("band_delta", "cut_delta"), ("geometry_delta", "geometry_cut")
 
 
@@ -57,8 +57,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         for axes, name in zip(_row(parts[1], constructions.size), constructions, strict=True):
             panels.append(Panel(axes, next(letters), str(name)))
             for i, hurst in enumerate(hursts):
-                one, of = test.sel(construction=name, hurst=hurst), f", $H$ = {hurst:g}"
-                _draw_curves(panels[-1], one, _CONSTRUCTED, colours=(i + 3, i + 3), of=of)
+                states, of = test.sel(construction=name, hurst=hurst), f", $H$ = {hurst:g}"
+                _draw_curves(panels[-1], states, _CONSTRUCTED, colours=(i + 3, i + 3), of=of)
             axes.axhline(2, color="k", lw=0.8)
         legends_below(parts[1], entries(axes))
     return Drawing(figure, table_of(*panels), caption(__name__, **_words(test)))
@@ -81,9 +81,9 @@ def _draw_curves(
     panel: Panel, states: xr.Dataset, names: Sequence[str], *, colours: Sequence[int], of: str = ""
 ) -> None:
     """Dimension of the contact domain and of its cut."""
-    for name, colour, (label, marker, line, beside) in zip(names, colours, _STYLES, strict=True):
+    for name, colour, (label, marker, line, shift) in zip(names, colours, _STYLES, strict=True):
         style: dict[str, Any] = {"marker": marker, "ls": line, "color": colour_of(colour)}
-        style |= {"unit": (beside, 1.0), "label": f"{label}{of}", "hollow": {"zorder": 3}}
+        style |= {"unit": (shift, 1.0), "label": f"{label}{of}", "hollow": {"zorder": 3}}
         has_interval = np.isfinite(Estimate.read(states, name).width)
         shown = states.assign(known=("reduced_pressure", has_interval))
         panel.curve(shown, "reduced_pressure", name, filled="known", **style)
@@ -93,13 +93,13 @@ def _draw_curves(
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
     """Number of states that differ from the cut; dimensions under the least and largest load."""
-    known = test["domain_determined"]
+    determined = test["domain_determined"]
     ends = [test["band_delta"].isel(reduced_pressure=load).values for load in (0, -1)]
     return {
         "surfaces": _count(test),
         "beyond": int(test["domain_beyond_cut"].sum()),
-        "states": known.size,
-        "undetermined": int((~known).sum()),
+        "states": determined.size,
+        "undetermined": int((~determined).sum()),
         "spans": [
             dict.fromkeys(number(end) for end in (np.nanmin(values), np.nanmax(values)))
             for values in ends

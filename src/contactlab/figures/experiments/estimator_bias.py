@@ -90,11 +90,21 @@ def _draw_bias(axes, bias):
     aim = bias.attrs["tolerated_bias"]
     axes.axhspan(-aim, aim, color="0.9", lw=0, label=rf"aim: bias within {aim:g}")
     for n, name in enumerate(bias["estimator"].values):
-        one, x = bias.sel(estimator=name), _beside(bias, n)
+        of_estimator, x = bias.sel(estimator=name), _beside(bias, n)
         label = _label(bias, name)
-        axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **_style(n))
-        moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
-        axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **_style(n))
+        axes.errorbar(
+            x,
+            of_estimator["bias"],
+            of_estimator["scatter"],
+            capsize=2,
+            lw=0.8,
+            label=label,
+            **_style(n),
+        )
+        moved = np.abs(of_estimator["slope_bias"] - of_estimator["bias"]) > 1e-9
+        axes.plot(
+            x[moved], of_estimator["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **_style(n)
+        )
 
 
 def _draw_coverage(axes, bias):
@@ -107,12 +117,12 @@ def _draw_coverage(axes, bias):
 
 
 def _words(bias):
-    """Errors and coverage of the estimators where their bias is known."""
+    """Errors and coverage of the estimators where their bias is determined."""
     start = bias.attrs["from_hurst"]
-    known = bias.sel(estimator=bias["worst_bias"].notnull())
-    names = [_name(name) for name in known["estimator"].values]
-    errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
-    least = dict(zip(names, known["min_coverage"].values.tolist(), strict=True))
+    determined = bias.sel(estimator=bias["worst_bias"].notnull())
+    names = [_name(name) for name in determined["estimator"].values]
+    errors = dict(zip(names, determined["overall_error"].values.tolist(), strict=True))
+    least = dict(zip(names, determined["min_coverage"].values.tolist(), strict=True))
     return {
         "seeds": bias.sizes["seed"],
         "start": start,

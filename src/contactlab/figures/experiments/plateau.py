@@ -151,7 +151,9 @@ def _words(
     """Trends of the synthetic joints, and verdicts on the plateaus that the paper has."""
     said = labels_by_verdict(atlas, names, PLATEAUS, MAX_IN_CAPTION)
     flush = [slide["dilatancy_over_rms"] for slide in slides if slide.attrs["matched"]]
-    means = np.concatenate([one.mean("direction_or_seed", skipna=False).values for one in flush])
+    means = np.concatenate(
+        [of_joint.mean("direction_or_seed", skipna=False).values for of_joint in flush]
+    )
     ends = (end(means[np.isfinite(means)]) for end in (np.min, np.max))
     with_it, without = joints["trend"].values
     return {

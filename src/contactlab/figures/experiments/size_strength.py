@@ -31,7 +31,7 @@ NEEDS = ("size_strength",)
 KEY = "size_strength"
 ORDER = 8
 
-#: Law of contact whose points are filled: the pressure of the other is capped.
+#: Law of contact whose points are filled; the other law caps the pressure.
 ELASTIC = "elastic"
 
 

@@ -42,7 +42,7 @@ _EXPONENTS: tuple[tuple[str, float, str, str, dict[str, str]], ...] = (
 )
 #: Lines of the null models.
 _NULLS = ("--", ":")
-#: Load at which the caption gives the three, p / (E* h'_rms).
+#: Load at which the caption quotes the three exponents, p / (E* h'_rms).
 _QUOTED = 0.01
 
 
@@ -60,7 +60,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels[0].set_ylabel("exponent (1)")
     no_effect = Patch(color="0.88", label=f"no size effect: within {NO_EFFECT:g} of 0")
     bars = heading(f"bars: {100 * USUAL:.0f} % intervals")
-    size, *others = (entries(panels[0])[at] for at in (slice(0, 3), slice(3, 6), slice(6, None)))
+    size, *others = (
+        entries(panels[0])[part] for part in (slice(0, 3), slice(3, 6), slice(6, None))
+    )
     legends_below(figure, size, *others[:-1], [*others[-1], no_effect, bars], columnspacing=3)
     tables = [
         rows(test[[name, f"{name}_half_width"]], name, f"{name}_half_width", exponent=name).rename(

@@ -31,8 +31,14 @@ from .maps import (
     scan_extent,
     window_outline,
 )
-from .measured import draw_over_force, draw_series, measured_range, measured_series, threshold_words
-from .measured import table_of as table_of_maps
+from .measured_maps import (
+    draw_over_force,
+    draw_series,
+    measured_range,
+    measured_series,
+    threshold_words,
+)
+from .measured_maps import table_of as table_of_maps
 from .panel import Panel, panels_of, rows, table_of
 from .points import draw_points, hollow_entry, reach
 from .relief import draw_faces

@@ -56,7 +56,7 @@ def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
 
 def _spare(panel, axis):
     if not axis.label.get_text():
-        axis.set_label_coords(0, 0)  # else a place clear of the numbers is sought for it too
+        axis.set_label_coords(0, 0)  # otherwise matplotlib also seeks a place for it
     # A secondary axis gets its limits only while it is drawn.
     is_known = not isinstance(panel, SecondaryAxis)
     if is_known and type(axis.get_major_formatter()) is LogFormatterSciNotation:

@@ -17,7 +17,7 @@ _MEAN_HURST = {
     BAND_LIMITED: (0.407, 0.500, 0.611, 0.730, 0.786, 0.836, 0.858),
     POINTS: (0.311, 0.452, 0.587, 0.720, 0.781, 0.835, 0.859),
 }
-#: The same over the short range.
+#: Mean H by the slope over the short range.
 _MEAN_HURST_SHORT = {
     BAND_LIMITED: (0.501, 0.580, 0.674, 0.779, 0.830, 0.876, 0.896),
     POINTS: (0.395, 0.521, 0.642, 0.765, 0.824, 0.876, 0.899),
@@ -55,7 +55,7 @@ def _add_ranges(heights, side, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     A column of few nodes misses peaks between them; levelling takes from the widest columns.
     """

@@ -16,11 +16,11 @@ def power_spectrum_curves(heights: np.ndarray, spacing: float) -> dict[str, Curv
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     Profiles lack waves that are short across them, or have short waves along them folded back.
     Their spectrum goes as q_x^-(1 + 2H); the shortest wave is two cells long. Where the surface
-    rolls off, they lack waves that are long across them too.
+    rolls off, profiles also lack waves that are long across them.
     """
     slope = 1 + 2 * HURST_GRID[:, np.newaxis]
     kept = sampled(sampling, slope, 2 / fit.length)

@@ -115,10 +115,10 @@ def _square_about_line(piece):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H that the slope gives.
+    """Mean H of surfaces whose curve has this slope.
 
-    Missing waves lie wholly about a window's plane, so all of their mean square is lost; of the
-    surface's only a part lies there.
+    The mean square of missing waves lies wholly about a window's plane, so all of it is lost; of
+    the surface's mean square only a part lies about that plane.
     """
     whole = fit.axis == "both"
     unit = square_about_plane() if whole else square_about_line()

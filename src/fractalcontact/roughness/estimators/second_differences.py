@@ -46,7 +46,7 @@ def _add_second_differences(heights, lag, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     Second differences of noise are 3 times its differences, those of the surface 4 - 4^H times.
     """

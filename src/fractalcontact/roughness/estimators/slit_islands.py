@@ -19,8 +19,7 @@ _MEAN_HURST = {
     BAND_LIMITED: (0.411, 0.520, 0.633, 0.747, 0.794, 0.835, 0.857),
     POINTS: (0.269, 0.456, 0.602, 0.731, 0.777, 0.827, 0.848),
 }
-#: The same over the short range.
-#: (smoothed: their standard errors are 0.01 to 0.02).
+#: Mean H by the slope over the short range, smoothed: the standard errors are 0.01 to 0.02.
 _MEAN_HURST_SHORT = {
     BAND_LIMITED: (0.526, 0.608, 0.672, 0.733, 0.762, 0.795, 0.815),
     POINTS: (0.370, 0.508, 0.617, 0.698, 0.733, 0.768, 0.790),
@@ -38,10 +37,10 @@ def slit_island_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
     edges = np.geomspace(1, min(heights.shape) / 2, _bins_to(min(heights.shape) / 2) + 1)
     bins = len(edges) - 1
     total, weight = np.zeros((2, bins, BLOCKS**2))
-    known = np.isfinite(heights)
-    levels = np.quantile(heights[known], LEVELS) if known.any() else []
+    measured = np.isfinite(heights)
+    levels = np.quantile(heights[measured], LEVELS) if measured.any() else []
     for level in levels:
-        area, perimeter, block = _islands(heights, known, level)
+        area, perimeter, block = _islands(heights, measured, level)
         root = np.sqrt(area)
         which = np.digitize(root, edges) - 1
         inside = which < bins
@@ -56,11 +55,11 @@ def _bins_to(longest: float) -> int:
     return max(int(np.log2(longest) * LENGTHS_PER_OCTAVE), 0)
 
 
-def _islands(heights, known, level):
+def _islands(heights, measured, level):
     """Area, perimeter (cells) and block of every island and lake that ends within the surface."""
-    above = known & (heights > level)
+    above = measured & (heights > level)
     islands, n_islands = ndimage.label(above)
-    lakes, n_lakes = ndimage.label(known & ~above)
+    lakes, n_lakes = ndimage.label(measured & ~above)
     lakes[lakes > 0] += n_islands
     # Number 0 marks missing cells and a rim round the grid.
     label = np.pad(islands + lakes, 1)
@@ -83,9 +82,9 @@ def _islands(heights, known, level):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
-    Small islands have no lakes yet, and each coast alone is smoother than all of them.
+    Small islands have no lakes yet, and a single coast is smoother than all coasts together.
     """
     means = _MEAN_HURST[sampling], _MEAN_HURST_SHORT[sampling]
     return tabulated_mean(fit, *means, factor=FACTOR, second_differences=0.5)

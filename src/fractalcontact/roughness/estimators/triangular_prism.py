@@ -55,7 +55,7 @@ def _add_facet_slopes(heights, side, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope.
+    """Mean H of surfaces whose curve has this slope.
 
     A facet's mean square rise is 1 + 2^(H - 1) times the mean square difference. Levelling takes
     both axes' part from it, and of noise it is 1 1/2 times the difference.

@@ -31,7 +31,9 @@ def _add_differences(heights, lag, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H by the slope: levelling, roll-off and missing short waves lower the curve."""
+    """Mean H of surfaces whose curve has this slope: levelling, roll-off and missing short waves
+    lower the curve.
+    """
     left = difference_fraction(fit.length / fit.roll_off, fit.shape)
     levelled = levelled_fraction(fit, levelled_slope())
     return hurst_of_mean_square(fit, left - levelled - short_wave_fraction(fit, sampling, 1))

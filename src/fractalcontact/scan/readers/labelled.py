@@ -12,7 +12,7 @@ from ...core.errors import InputError
 from ...core.labels import printable
 from ...core.text import percent
 from ...core.units import length_factor
-from ...gridding.measured import NOTE
+from ...gridding.ungridded import NOTE
 from ..array_hints import require_array
 from ..format import Format
 from ..options import ScanOptions
@@ -27,7 +27,8 @@ from ..variables import (
     table_names,
 )
 
-#: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
+#: Largest distance of coordinates from equal steps, as a fraction of a cell: float32 leaves as
+#: much.
 REGULAR = 0.01
 #: Numbers that netCDF leaves in cells that were not written.
 _UNWRITTEN = {
@@ -96,7 +97,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _direction(attributes: dict, options: ScanOptions, where: str) -> str:
-    """Which way heights grow by the attribute ``positive``, up where it is not there."""
+    """Direction in which heights grow, by the attribute ``positive``; up without it."""
     said = str(attributes.get("positive", "up")).strip("\0 ").lower()
     for direction in ("up", "down"):
         if re.fullmatch(rf"{direction}(wards?)?", said):

@@ -63,7 +63,7 @@ def _by_trimesh(stream: BinaryIO, path: Path, file_type: str) -> tuple[MeshText,
 
 
 def _refuse_wrong_count(path: Path) -> None:
-    """Refuse an STL file whose triangles are others than its header or its lines say."""
+    """Refuse an STL file whose number of triangles is not that of its header or of its lines."""
     with open(path, "rb") as stream:
         head = stream.read(84)
     held, rest = divmod(path.stat().st_size - 84, 50)

@@ -55,7 +55,8 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
 def _notes_on_range(values: np.ndarray, low: float, high: float, path: Path) -> tuple[str, ...]:
     """Note on heights outside the range that the header states.
 
-    The last height alone outside it is cut off, and refused. Where more are, the range is wrong.
+    A single height outside the range is the last one, cut off, and is refused. Where several lie
+    outside, the range is wrong.
     """
     margin = _ROUNDED * max(high - low, abs(low), abs(high))
     outside = (values < low - margin) | (values > high + margin)

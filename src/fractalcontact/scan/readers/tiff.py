@@ -39,7 +39,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         stated = _imagej(file, page) or _geotiff(page)
         needs = Needs(arrays=names)
         require_stated(path, options, needs, lambda: _hints(names, stated, page))
-        name = choose_array(names, options.variable, path)  # that of `page`, else refused
+        name = choose_array(names, options.variable, path)  # refused unless it is that of `page`
         values = page.asarray().astype(np.float64)
         if values.shape != page.shape:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")

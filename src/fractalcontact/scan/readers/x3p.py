@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...gridding.measured import NOTE
+from ...gridding.ungridded import NOTE
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading
@@ -61,7 +61,8 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
 def _open(path: Path):
     """Input of x3pio, place of the first row ("NW", ...; "" if not stated), and notes.
 
-    x3pio knows no files of the standard's first edition. Their root element is renamed in memory.
+    x3pio knows no files of the standard's first edition. The root element of such a file is renamed
+    in memory.
     """
     from defusedxml import ElementTree
 

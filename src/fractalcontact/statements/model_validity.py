@@ -14,7 +14,7 @@ from ..core.datasets import labelled
 from ..core.limits import MAX_TOUCHING
 from ..core.per_curve import per_curve
 from ..core.settings import Material
-from ..core.text import percent
+from ..core.text import compact, percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_JUDGED, POOR, STRENGTH, USUAL
 
@@ -34,7 +34,7 @@ MIN_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 #: Fraction F / (H A_0) of the largest load beyond which nearly all of the window touches: a contact
 #: domain then has no dimension of its own.
-FULL = 0.87
+FULL_LOAD_FRACTION = 0.87
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
@@ -113,11 +113,11 @@ def elastic_model_validity(
         share = nominal_pressure / limits.good_to
         words = f"the load is {percent(share)} of the most that contacts with a hardness of "
         words += f"{pressure_words(limits.good_to)} can carry"
-        judgements = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
+        judgements = [(_graded(share, MAX_TOUCHING, FULL_LOAD_FRACTION), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
         size = "small" if by_slope == GOOD else "too steep"
-        judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
+        judgements.append((by_slope, SLOPE, f"rms slope {compact(rms_slope)}, {size}"))
     judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
     verdict, by, _ = judgements[0]
     # A load far below the largest that the window carries is no reason for a verdict.

@@ -5,8 +5,8 @@ import pytest
 from scipy import ndimage
 from tiny_pairs import STUDY
 
+from fractalcontact.scan.other_readings import OTHER_FACES, READING
 from fractalcontact.stages.specimen import specimen_of_files
-from fractalcontact.states.scan_spread import OTHER_FACES, READING
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.synthesis import self_affine
 

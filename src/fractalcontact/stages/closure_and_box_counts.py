@@ -19,19 +19,21 @@ from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.closure_constants import closure_constants
 from ..error_budget.error_budget import error_budget
 from ..error_budget.slid_variants import slid_variants
-from ..joint.overlap import load_warning, node_marks
+from ..error_budget.solve_plan import solve_plan
+from ..joint.openings import prefractal_openings
+from ..joint.overlap import node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..laws.scan_errors import load_warning
 from ..registration.registration_scatter import stored_motions
 from ..roughness.recommended import best_dimension
+from ..scan.other_readings import other_readings
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
-from ..states.plan import solve_plan
 from ..states.registration_spread import registration_spread, registration_values
-from ..states.scan_spread import other_readings, reading_values, scan_spread, wider_spread
-from ..states.separation import prefractal_openings
+from ..states.scan_spread import reading_values, scan_spread, wider_spread
 from ..states.states import (
     DIP,
     chosen_offset,

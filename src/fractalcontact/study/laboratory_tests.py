@@ -11,7 +11,7 @@ from typing import Any
 from ..core.errors import InputError
 from ..core.keys import Section
 from ..core.settings import TEST_COLUMNS, MeasuredTest
-from .measured_keys import Tests
+from .laboratory_keys import Tests
 from .scan_files import refuse_outside_link
 
 

@@ -8,7 +8,11 @@ import xarray as xr
 from made_settings import made_settings
 
 from fractalcontact.core.verdicts import GOOD, IN_PART, NOT_JUDGED, POOR
-from fractalcontact.states.model_validity import Validity, elastic_model_validity, model_validity
+from fractalcontact.statements.model_validity import (
+    Validity,
+    elastic_model_validity,
+    model_validity,
+)
 
 NOTHING = replace(made_settings().material, modulus=20e3)
 STRENGTH = replace(NOTHING, joint_wall_strength=80.0)

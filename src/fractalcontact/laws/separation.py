@@ -5,47 +5,15 @@ where it begins, and that node changes with the spacing and the window. The sepa
 planes, delta_r - w, and the closure between two loads that many nodes carry do not depend on it.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.determined import decided_by_scan
 from ..core.labels import cf_attrs
-from ..core.limits import RESOLVED_NODES
-from ..joint.joint import composite_topography, prefractal
-from ..joint.overlap import on_sound_cells
-from .states import error_attrs
-
-
-def prefractal_openings(
-    specimen: xr.Dataset, joint: xr.Dataset, resolutions: Sequence[int]
-) -> xr.DataArray:
-    """Rigid dilatancy of the pre-fractals: the opening at which each touches first, mm.
-
-    max h_k(v) less a datum, over (direction, offset, resolution). The datum is max h(0) at the
-    scan's own resolution, the joint before it slides; against a plane, which mates with nothing, it
-    is the mean of h.
-    """
-    cells = joint["offset_cells"].transpose("contact_direction", ...)
-    directions = cells["contact_direction"].values
-    opened = np.empty((*cells.shape, len(resolutions)))
-    for i, direction in enumerate(directions):
-        mated = composite_topography(specimen, direction, 0)
-        datum = mated.mean() if direction == "none" else mated.max()
-        for j, n in enumerate(cells.values[i]):
-            composite = composite_topography(specimen, direction, n)
-            opened[i, j] = [prefractal(composite, k).max() - datum for k in resolutions]
-    return xr.DataArray(
-        opened,
-        dims=("direction", "offset", "resolution"),
-        coords={"direction": directions, "resolution": list(resolutions)},
-    )
-
-
-#: Largest relative difference between two pressures that are equal but for rounding.
-ROUNDING = 1e-9
+from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
+from ..states.states import error_attrs
+from .scan_errors import on_sound_cells
 
 #: Separation and seated closures: unit and long name.
 _WORDS = {
@@ -84,7 +52,8 @@ _SEATS = {
 def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
     """Add the separation of the mean planes to a closure stage.
 
-    Without the openings of :func:`prefractal_openings` only the scan's own resolution has one.
+    Without the openings of :func:`joint.openings.prefractal_openings` only the scan's own
+    resolution has one.
     """
     if openings is None:
         openings = curves["rigid_opening"].where(curves["resolution"] == 1)
@@ -120,7 +89,7 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])
-    heavy = curves["nominal_pressure"] >= seating_pressure * (1 - ROUNDING)
+    heavy = curves["nominal_pressure"] >= seating_pressure * (1 - PRESSURE_ROUNDING)
     seats = force.where(on_sound_cells(curves) & solved & heavy).min("normal_force")
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")

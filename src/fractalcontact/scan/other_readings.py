@@ -15,11 +15,17 @@ from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.settings import SpecimenSettings
 from ..gridding.faces import grid_pair
-from ..gridding.measured import Measured
-from ..scan.options import ScanOptions
-from ..states.scan_spread import MARKS, OTHER_FACES, OTHER_MARKS, READING
+from ..gridding.ungridded import UngriddedScan
 from ..surface.specimen import make_specimen, window_arguments
+from .options import ScanOptions
 
+#: Heights (reading, face, y, x) of both faces by other readings of the scans, in a specimen.
+OTHER_FACES = "other_faces"
+#: Dimension of the readings.
+READING = "reading"
+#: Suspicious cells (reading, mark, y, x) of those heights, by these variables of a specimen.
+OTHER_MARKS = "other_marks"
+MARKS = ("suspect_lower", "suspect_upper", "overlap")
 #: Registrations that are compared, the one of a sidecar and none, and treatments of outliers.
 _UNREGISTERED, _REGISTERED = "none", "rigid"
 _TREATED = {"keep": "fill", "mask": "fill", "fill": "keep"}
@@ -31,27 +37,27 @@ MIN_CORRELATION = 0.9
 def with_other_readings(
     specimen: xr.Dataset,
     faces: tuple[xr.DataArray, xr.DataArray],
-    measured: tuple[Measured, Measured],
+    scans: tuple[UngriddedScan, UngriddedScan],
     options: ScanOptions,
     settings: SpecimenSettings,
 ) -> xr.Dataset:
-    """Specimen of two faces with :data:`states.scan_spread.OTHER_FACES`, where there are others.
+    """Specimen of two faces with :data:`OTHER_FACES`, where there are others.
 
     Parameters
     ----------
     specimen : xr.Dataset
         From :func:`surface.specimen.make_specimen`.
     faces : tuple of DataArray (y, x)
-        That it was made from.
-    measured : tuple of Measured
-        Numbers of both files, from :func:`scan.read.measure_faces`.
+        Both faces that the specimen was made from.
+    scans : tuple of UngriddedScan
+        Numbers of both files, from :func:`scan.read.faces_in_mm`.
     options : ScanOptions
         Scan keys of the pair.
     settings : SpecimenSettings
     """
     on_grid: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     # One at a time: of large scans each takes much memory.
-    for words, other in _readings(faces, measured, options, settings):
+    for words, other in _readings(faces, scans, options, settings):
         heights, marks = _on_grid(specimen, other, ("lower", "upper"), MARKS)
         if _is_whole(specimen, heights):
             on_grid[words] = heights, np.nan_to_num(marks, nan=1.0).astype(np.int8)
@@ -69,13 +75,13 @@ def with_other_readings(
     )
 
 
-def _readings(faces, measured, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
+def _readings(faces, scans, options, settings) -> Iterator[tuple[str, xr.Dataset]]:
     """Other readings by name, each as a specimen."""
     stated = options.registration or _REGISTERED
     otherwise = _REGISTERED if stated == _UNREGISTERED else _UNREGISTERED
     pairs = {stated: faces}
     if stated == _UNREGISTERED or _in_one_frame(faces):
-        lower, upper = measured
+        lower, upper = scans
         # As they were given, faces may share no area, or lie in the wrong order.
         with suppress(InputError):
             pairs[otherwise] = grid_pair(lower, upper, otherwise, options.mirror_upper)
@@ -125,3 +131,22 @@ def _is_whole(specimen, heights) -> bool:
     """True of heights (face, y, x) without a hole in the window."""
     y, x, ny, nx = (specimen.attrs[f"window_{of}"] for of in ("y0", "x0", "ny", "nx"))
     return bool(np.isfinite(heights[:, y : y + ny, x : x + nx]).all())
+
+
+def other_readings(specimen: xr.Dataset) -> dict[str, xr.Dataset]:
+    """The specimen by each other reading of its scans; empty where it has none."""
+    if OTHER_FACES not in specimen:
+        return {}
+    names = [str(name) for name in specimen[READING].values]
+    parts = {face: specimen[OTHER_FACES].sel(face=face) for face in ("lower", "upper")}
+    if OTHER_MARKS in specimen:
+        parts |= {mark: specimen[OTHER_MARKS].sel(mark=mark) for mark in MARKS}
+    return {
+        name: specimen.assign(
+            {
+                of: specimen[of].copy(data=part.sel({READING: name}).values)
+                for of, part in parts.items()
+            }
+        )
+        for name in names
+    }

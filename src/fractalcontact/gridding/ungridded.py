@@ -1,4 +1,4 @@
-"""A scan measured in mm, before it is on a grid."""
+"""A scan in mm, before it is on a grid, and the notes on it that a user should act on."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ def warnings_of(notes: Iterable[str]) -> str:
 
 
 @dataclass(frozen=True)
-class Measured:
+class UngriddedScan:
     """A scan in mm, before it is on a grid.
 
     Attributes
