@@ -111,7 +111,7 @@ def test_states_of_sub_windows_are_in_the_units_that_they_state(oblong):
 def test_states_of_sub_windows_do_not_depend_on_which_axis_is_called_x(oblong):
     first, _, turned = oblong
     found = differences(
-        with_axes_exchanged(turned), first, rtol=1e-5, atol=1e-5, unordered="window"
+        with_axes_exchanged(turned), first, rtol=1e-5, atol=1e-5, unordered=("window",)
     )
     assert not [name for name in found if SOLVER_ERROR not in first[name].attrs["long_name"]]
 

@@ -305,7 +305,7 @@ def test_two_faces_are_reported_as_they_were_scanned():
     told = {"map_offset": "0.3 mm"}
     assert resolve_settings(ROCK, "one", told, "x", PAIR).map_offset == pytest.approx(0.3)
     slid = {"offsets": ["0.2 mm", "0.4 mm"]}
-    assert resolve_settings(ROCK, "one", slid, "x", PAIR).map_offset is None
+    assert resolve_settings(ROCK, "one", slid, "x", PAIR).map_offset == 0.0
 
 
 def test_a_plane_is_opposite_to_no_pair_of_scanned_faces(study, tmp_path):

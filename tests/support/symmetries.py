@@ -103,7 +103,7 @@ def within_factor(found, expected, factor, floor=0.0):
     return np.where(missing, np.isnan(found) == np.isnan(expected), agree)
 
 
-def differences(found, expected, *, rtol, atol=0.0, unordered=""):
+def differences(found, expected, *, rtol, atol=0.0, unordered=()):
     """Variables that differ, by name: how many of their values, and one pair.
 
     Values are compared by ``rtol`` and ``atol``; what an iteration left when it ended
@@ -116,8 +116,8 @@ def differences(found, expected, *, rtol, atol=0.0, unordered=""):
     rtol : float
     atol : float, optional
         A fraction of the largest value of a variable.
-    unordered : str, optional
-        A dimension along which the order does not count either.
+    unordered : tuple of str, optional
+        Dimensions along which the order does not count either.
     """
     assert set(found.variables) == set(expected.variables)
     for dim in set(expected.dims) & set(expected.coords):
@@ -130,8 +130,8 @@ def differences(found, expected, *, rtol, atol=0.0, unordered=""):
             same = values == wanted
         else:
             wanted, values = wanted.astype(float), values.astype(float)
-            if unordered in one.dims:
-                wanted, values = (np.sort(v, one.dims.index(unordered)) for v in (wanted, values))
+            for dim in set(unordered) & set(one.dims):
+                wanted, values = (np.sort(v, one.dims.index(dim)) for v in (wanted, values))
             largest = np.abs(wanted[np.isfinite(wanted)]).max(initial=_scale(name, one))
             if is_leftover(name, one):
                 floor = max(atol, LEFTOVER_FLOOR) * largest

@@ -148,7 +148,7 @@ class SpecimenSettings:
         key("auto, or a list of shear offsets v such as [0.1 mm, 0.3 mm]", only="sliding"),
     ]
     """shear offsets v, rounded to whole cells of the scan; or `auto`: eight between one cell
-    and the largest possible, and zero where two faces were scanned"""
+    and the largest possible. Two scanned faces are solved at zero, too"""
     resolutions: _Resolutions
     """multiples k of the scan's spacing; every k-th node is kept"""
     surface_range: Range
@@ -235,7 +235,7 @@ class StateSettings(ContactSettings):
     ]
     """nominal pressure from which closure and its laws are counted, as a laboratory seats its
     specimen. The seat is, at each offset, the first of `loads` from this pressure on with 10
-    nodes or more"""
+    nodes or more and half of the force or more on sound cells of the scans"""
 
 
 @dataclass(frozen=True)
