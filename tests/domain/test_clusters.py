@@ -11,6 +11,8 @@ from known_sets import embedded
 from fractalcontact.core.determined import follows_law
 from fractalcontact.domain.clusters import (
     CLUSTER_FIELDS,
+    MIN_CLUSTERS,
+    MIN_OCTAVES,
     cluster_sizes,
     cluster_statistics,
     morisita_index,
@@ -85,6 +87,14 @@ def test_exponent_of_an_exact_power_law(beta):
     assert found["cluster_fit_min"] == pytest.approx(0.01 * sizes[-int(found["cluster_fit_n"])])
     assert found["cluster_fit_max"] == pytest.approx(0.01 * sizes.max())
     assert found["cluster_fit_distance"] < 0.01
+
+
+def test_a_law_needs_its_fewest_clusters_and_no_more():
+    counts = np.array([MIN_CLUSTERS - 7, 4, 2, 1])
+    sizes = np.repeat(2 ** np.arange(MIN_OCTAVES), counts)
+    assert size_exponent(counts, sizes, 1.0)["cluster_fit_n"] == MIN_CLUSTERS
+    counts, sizes = counts - [1, 0, 0, 0], sizes[1:]
+    assert np.isnan(size_exponent(counts, sizes, 1.0)["cluster_exponent"])
 
 
 # -- independent -----------------------------------------------------------------------------------

@@ -126,6 +126,11 @@ def test_objects_normals_textures_and_negative_corners_of_obj(tmp_path):
     assert heights.attrs["duplicated_points"] == 0
 
 
+def test_an_obj_file_without_faces_is_a_cloud(tmp_path):
+    lines = obj_lines()[: NX * NY]
+    np.testing.assert_array_equal(read_scan(save(tmp_path / "rock.obj", lines), MM), expected())
+
+
 # --- what is cut off is refused ------------------------------------------------------------------
 
 
