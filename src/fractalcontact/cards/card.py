@@ -7,7 +7,7 @@ from typing import Any
 
 from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..pages.first_screen import is_synthetic, model_of
+from ..pages.first_screen import boundary_of, is_synthetic, model_of
 from ..pages.lights import lights_of, trust_of
 from ..pages.summary import lengths_of
 from ..report.published import read_at, row_of, shown_in, stages_of
@@ -42,6 +42,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "faces": OPPOSITE[subject["specimens"].attrs["opposite"]],
         "material": printable(subject.settings["material"]["name"]),
         "model": model,
+        "boundary": boundary_of(subject),
         "direction": subject.direction,
         "geometry": geometry_of(subject),
         "window": str(subject["specimens"].attrs["window_note"]),

@@ -6,6 +6,10 @@ from roughcontact.limits import RESOLVED_NODES as RESOLVED_NODES
 #: area was a third too large at 14 nodes, from 30 on within some per cent.
 CORRECTED_NODES = 30
 
+#: Fewest free nodes, between first touch and the hardness, that carry the change of the force of a
+#: yielding contact with a stiffness.
+MIN_FREE_NODES = 30
+
 #: Relative differences up to which quantities are nearly equal, flat or linear, and so in part.
 NEARLY, LOOSELY = 0.1, 0.25
 

@@ -7,7 +7,7 @@ stands for "auto".
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import Field
@@ -28,6 +28,8 @@ from .keys import (
 )
 
 S = TypeVar("S")
+#: Boundaries of a window: it stands alone on the half-space, or is mirrored at its edges.
+FREE, MIRRORED = "free", "mirrored"
 _Loads = Annotated[list[Load], Field(min_length=1)]
 _Directions = Annotated[
     list[str], StatedAs(Annotated[list[Direction], Field(min_length=1), *different])
@@ -191,6 +193,18 @@ class JointSettings:
         ),
     ]
     """offset of the contact maps over resolutions and loads"""
+    boundary: Annotated[
+        str,
+        StatedAs(Literal["free", "periodic", "mirrored"]),
+        key(
+            "free, periodic or mirrored: what lies beyond the edges of the window",
+            unsaid="`mirrored` of a scan, `free` of an embedded specimen",
+        ),
+    ] = field(default=FREE, kw_only=True)
+    """what lies beyond the edges of the window: `free`, an unloaded half-space, as in the paper;
+    `mirrored`, its reflection, so that it is the section of a column between frictionless walls, as
+    a laboratory specimen is; `periodic`, its repetition, which has a seam. Only a `free` window
+    settles as a whole (w_b)"""
 
 
 @dataclass(frozen=True)

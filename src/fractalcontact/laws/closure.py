@@ -1,11 +1,14 @@
 """Closure and dilatancy of the joint from its contact states (paper, sect. 5)."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
-from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, MIN_FREE_NODES, RESOLVED_NODES
+from ..core.settings import FREE
 from ..states.separation import add_seated_closure, add_separation
 from ..states.settlement import bulk_settlement, interface_closure
 from ..states.states import OFFSETS, STATE_VARIABLES, WITH_SCATTER, error_attrs
@@ -16,14 +19,16 @@ from .seated_laws import add_seated_laws
 
 #: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
-SINGLE_CELLS = f"too few contacts (under {RESOLVED_NODES}) carry the change of the force"
+SINGLE_CELLS = (
+    f"too few contacts (under {MIN_FREE_NODES} where they crush) carry the change of the force"
+)
 FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
 
 
 def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArray:
     """Interface closure, mm, where it is determined: missing where contact is too full for one.
 
-    Faces in full contact are loaded like a rigid punch, which settles less than the uniform
+    Free faces in full contact are loaded like a rigid punch, which settles less than the uniform
     pressure of w_b does: by some 0.08 F/(E* b) for a square. Where the rough faces close by less
     than that, w - w_b is negative, which no closure is, and says nothing of the interface. Where
     faces are flush nothing closes, and that is known.
@@ -119,7 +124,8 @@ def interface_states(states: xr.Dataset, window: tuple[float, float], e_star: fl
     Without the errors, separation and seats of :func:`interface_curves`.
     """
     result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
-    settlement = bulk_settlement(states["normal_force"].values, e_star, *window)
+    boundary = states.attrs.get("boundary", FREE)
+    settlement = bulk_settlement(states["normal_force"].values, e_star, *window, boundary=boundary)
     _add_interface(result, settlement, window[0] * window[1])
     return result
 
@@ -156,9 +162,8 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     ):
         attrs = cf_attrs("1", words.format(fewest))
         added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
-    stiffness = interface_stiffness(
-        curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
-    ).where(~flush)
+    bulk = bulk_stiffness(curves["nominal_pressure"], curves["bulk_settlement"])
+    stiffness = interface_stiffness(curves["stiffness"] / area, bulk).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
@@ -240,11 +245,17 @@ def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
     return error.transpose(*closure.dims)
 
 
+def bulk_stiffness(pressure: Any, settlement: Any) -> Any:
+    """Stiffness sigma_0/w_b of the blocks, MPa/mm; infinite where they do not settle."""
+    with np.errstate(divide="ignore"):
+        return pressure / settlement
+
+
 def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray:
     """Stiffness of the interface alone, MPa/mm: 1/k = 1/k_int + 1/k_bulk, compliances add up.
 
-    ``total`` is d sigma_0/dw, ``bulk`` sigma_0/w_b. NaN where the whole is no more compliant than
-    the bulk: contact is so full that it answers like a punch.
+    ``total`` is d sigma_0/dw, ``bulk`` that of :func:`bulk_stiffness`. NaN where the whole is no
+    more compliant than the bulk: contact is so full that it answers like a punch.
     """
     compliance = 1 / total - 1 / bulk
     return 1 / compliance.where(compliance > 0)
@@ -274,7 +285,10 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     result["elastic_dilatancy"].attrs = cf_attrs("mm", "elastic dilatancy delta = delta_r - w_int")
     for name in ("separation", "separation_error"):
         result[name] = finest[name].transpose(*result["elastic_dilatancy"].dims)
-    misses = left_out_misses(finest["normal_force"].values, finest["closure"], finest["stiffness"])
+    # Flush faces close with their blocks alone: where those do not settle, nothing is interpolated.
+    closes = (finest["bulk_settlement"] > 0) | (finest["interface_closure"] > 0)
+    closure = finest["closure"].where(closes)
+    misses = left_out_misses(finest["normal_force"].values, closure, finest["stiffness"])
     result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
     result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"

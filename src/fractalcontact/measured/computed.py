@@ -14,7 +14,7 @@ from ..core.reported import Reported
 from ..core.settings import MeasuredSettings, MeasuredTest
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement
+from ..states.settlement import window_settlement
 from .curve import Curve
 
 #: Largest pressure on a joint as a fraction of its hardness.
@@ -69,9 +69,9 @@ class Joint:
     def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
         """Interface closure on the branch of a test, with modulus and H multiplied by a factor.
 
-        In a half-space all pressures scale with E*, where the hardness does too. What has crushed
-        under the largest pressure that the joint has carried before, MPa, stays so. Raises
-        `NotConverged` if a state on unloading could not be verified.
+        All pressures scale with E*, where the hardness does too. What has crushed under the largest
+        pressure that the joint has carried before, MPa, stays so. Raises `NotConverged` if a state
+        on unloading could not be verified.
         """
         curve = self.curve
         if test.branch != LOAD and np.isfinite(self.hardness):
@@ -105,10 +105,9 @@ class Joint:
             name = self.loading.specimen.attrs["name"]
             failure.add_note(f"specimen {name}, test '{test.label}' at H = {hardness:g} MPa")
             raise
-        sides = np.multiply(space.shape, space.spacing)
         force = np.array([state.force for state in path])
         closure = np.array([state.closure for state in path])
-        closure -= bulk_settlement(force, space.modulus, *sides)
+        closure -= window_settlement(space, force)
         # The error is that of the study's grid, which is the same at all loads.
         error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
         return Curve.of(force / area, closure, error)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..core.labels import OPPOSITE, printable
+from ..core.labels import BOUNDARIES, OPPOSITE, printable
 from ..core.limits import JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
@@ -77,11 +77,17 @@ def model_of(subject: Subject) -> str:
 
 
 def window_words(subject: Subject) -> str:
-    """Sides and spacing of the window of a joint, and how they were chosen."""
+    """Sides, spacing and boundary of the window of a joint, and how they were chosen."""
     lengths, note = lengths_of(subject), subject["specimens"].attrs["window_note"]
     sides = f"{short(lengths['window_x'])} × {short(lengths['window_y'])} mm"
     chosen = f": {note}" if note else ""
-    return f"window {sides}, spacing {with_unit(lengths['spacing'], 'mm')}{chosen}"
+    spacing = with_unit(lengths["spacing"], "mm")
+    return f"window {sides}, spacing {spacing}, {boundary_of(subject)}{chosen}"
+
+
+def boundary_of(subject: Subject) -> str:
+    """What lies beyond the edges of the window, in words."""
+    return BOUNDARIES[subject.settings.get("boundary", "free")]
 
 
 def offset_words(subject: Subject) -> str:

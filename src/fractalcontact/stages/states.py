@@ -21,6 +21,7 @@ from ..joint.overlap import load_warning, node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..laws.reference_states import solve_reference_stiffness
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
@@ -85,6 +86,8 @@ def state_stages(
     warnings = (load_warning(curves, reported), full_contact_warning(curves))
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
     curves.update(reported.variables())
+    joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    loading = joint.at_map_offset()
     dilatancy = elastic_dilatancy(curves, joints)
     if DIP in states:
         finest = {"resolution": states["resolution"].min()}
@@ -118,8 +121,7 @@ def state_stages(
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
-    joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
-    loading = joint.at_map_offset()
+    solve_reference_stiffness(loading, stages["closure"], mapped)
     budget = error_budget(
         loading,
         stages["closure"],

@@ -10,8 +10,8 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
 from .loading import JointLoading
-from .settlement import bulk_settlement, interface_closure
-from .state_scalars import state_area
+from .settlement import interface_closure, window_settlement
+from .state_scalars import resolved_slope, state_area
 from .sweep import load_steps
 
 #: Quantities of a state with a numerical error: unit, long name.
@@ -116,10 +116,9 @@ def state_quantities(
     the summit. The reference is a length of the joint and stays what it is.
     """
     space = state.space
-    sides = np.multiply(space.shape, space.spacing)
-    area = float(np.prod(sides))
-    settlement = float(bulk_settlement(state.force, space.modulus, *sides))
-    stiffness = state.stiffness
+    area = float(np.prod(np.multiply(space.shape, space.spacing)))
+    settlement = float(window_settlement(space, state.force))
+    stiffness = resolved_slope(state).value
     compliance = (area / stiffness if stiffness else np.inf) - settlement / (state.force / area)
     return {
         "closure": float(interface_closure(state.closure, settlement)),
