@@ -13,6 +13,7 @@ from fractalcontact.states.settlement import bulk_settlement, window_settlement
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.scan_files import ScanFiles
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING, E_STAR = 0.1, 20e3
@@ -138,6 +139,37 @@ def test_free_windows_that_crush_state_no_stiffness_on_reloading():
     # Loading hardly knows the edges.
     closures = [of["seated_closure"].sel(on_load) for of in (free, mirrored)]
     np.testing.assert_allclose(*closures, rtol=0.05)
+
+
+@pytest.mark.parametrize("material", [ROCK, WEAK], ids=["elastic", "crushing"])
+def test_mirrored_windows_have_no_unit_and_no_first_face(material):
+    """Lengths by 3 and pressures by 2, or both faces exchanged: the same states of contact."""
+    space = HalfSpace((36, 40), SPACING, E_STAR, boundary="mirrored")
+    grown = HalfSpace((36, 40), 3 * SPACING, 2 * E_STAR, boundary="mirrored")
+    lower, upper = rough(), 0.6 * rough(4)
+    hardness, solving = material.hardness, {"rtol": 1e-8}
+    first = solve_contact(lower - upper, space, mean_pressure=8.0, hardness=hardness, **solving)
+    other = solve_contact(
+        3 * (lower - upper), grown, mean_pressure=16.0, hardness=2 * hardness, **solving
+    )
+    np.testing.assert_allclose(other.pressure, 2 * first.pressure, atol=1e-3)
+    assert other.closure == pytest.approx(3 * first.closure, rel=1e-6)
+    # Turned over about y, the upper face is the lower one: h has the same heights, x reversed.
+    turned = (-upper[:, ::-1]) - (-lower[:, ::-1])
+    again = solve_contact(turned, space, mean_pressure=8.0, hardness=hardness, **solving)
+    np.testing.assert_allclose(again.pressure[:, ::-1], first.pressure, atol=1e-3)
+
+
+def test_a_force_there_moves_this_node_as_a_force_here_moves_that_one():
+    """Betti's reciprocity of the mirrored operator, at a corner, an edge and in the middle."""
+    space = HalfSpace((12, 15), (0.1, 0.13), E_STAR, boundary="mirrored")
+    nodes, fields = [(0, 0), (0, 7), (6, 8)], []
+    for node in nodes:
+        pressure = np.zeros(space.shape)
+        pressure[node] = 1.0
+        fields.append(space.displacement(pressure))
+    moved = np.array([[field[node] for node in nodes] for field in fields])
+    np.testing.assert_allclose(moved, moved.T, rtol=1e-10, atol=1e-18)
 
 
 STUDY = {

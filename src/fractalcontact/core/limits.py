@@ -26,6 +26,11 @@ JRC_RANGE = (0.0, 20.0)
 #: at low stress the logarithm would take it past the vertical.
 LARGEST_FRICTION_ANGLE = 70.0
 
+#: Strength of a joint over that computed with the stated phi_b, ends of an interval: phi_b measured
+#: on flat faces, the scatter of one laboratory; assumed, 5 to 95 % of 288 published shear tests
+#: beside Barton's law (median 1.23).
+FRICTION_FACTORS = {"measured": (0.87, 1.13), "assumed": (0.9, 1.9)}
+
 #: Largest fraction of the sub-windows of a size with a truncated angle; beyond it their mean
 #: strength is a bound and no result.
 MOSTLY_TRUNCATED = 0.5
@@ -79,3 +84,6 @@ CONFIDENCE = 0.95
 #: (1969) 279) and most tests 0.95. Windows that hold few hills show lower ones (Pastewka et al.,
 #: Phys. Rev. E 87 (2013) 062809).
 CONDUCTANCE_EXPONENTS = (0.95, 1.0)
+
+#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
+HARDEST = 3.0

@@ -72,10 +72,14 @@ class Elastic:
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction angle and wall strength of a material; NaN if not stated."""
+    """Friction angle and wall strength of a material; NaN if not stated.
+
+    ``basic_friction_angle_is`` is "measured" or "assumed".
+    """
 
     basic_friction_angle: float
     joint_wall_strength: float
+    basic_friction_angle_is: str = field(default="assumed", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -273,7 +277,8 @@ class MeasuredTest:
     of the flow, ``direction`` that of sliding. Displacement is counted from ``seat``; ``pressure``
     is held, ``largest_pressure`` was carried before (MPa). ``compliance`` is that of the rock
     between the gauge points (mm/MPa), ``error`` the half-width of the 95 % interval of a reading
-    (mm or MPa), ``calibrate`` "modulus" or "hardness".
+    (mm or MPa), ``calibrate`` "modulus" or "hardness", ``datum_pressure`` that of the reading of a
+    flow test which sets the rigid position of the faces.
     """
 
     kind: str
@@ -289,6 +294,7 @@ class MeasuredTest:
     compliance: float = 0.0
     error: float = math.nan
     calibrate: str = ""
+    datum_pressure: float = math.nan
 
     @property
     def label(self) -> str:

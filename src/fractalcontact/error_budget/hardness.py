@@ -12,7 +12,7 @@ from roughcontact.contact.path import loaded_state
 from roughcontact.contact.state import ContactState
 
 from ..core.datasets import labelled
-from ..core.limits import REFERENCE_PRESSURES
+from ..core.limits import HARDEST, REFERENCE_PRESSURES
 from ..flow.aperture import crushed_reason
 from ..flow.cubic_law import WAYS, flow_of
 from ..flow.network import hydraulic_aperture
@@ -23,9 +23,6 @@ from ..states.state_scalars import aperture
 from ..states.subgrid import state_quantities
 from ..states.sweep import load_steps
 from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_dimension, chosen_loads
-
-#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
-HARDEST = 3.0
 
 _LOADS = ("normal_force",)
 _IF = f"if contacts are {HARDEST:g} times as hard; missing where they are elastic"

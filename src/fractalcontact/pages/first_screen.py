@@ -12,7 +12,7 @@ from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, read, read_at, row_of
 from .files import CARD
-from .lights import lights_of, trust_of
+from .lights import trust_in
 from .summary import lengths_of
 
 #: Intervals as the register names them, in words.
@@ -52,7 +52,7 @@ def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
         "model": model_of(subject),
         "window": window_words(subject),
         "facts": facts_of(subject, synthetic),
-        "trust": trust_of(lights_of(subject)),
+        "trust": trust_in(subject),
     }
 
 
@@ -205,7 +205,10 @@ class _Block:
         rules.sort(key=lambda rule: rule[0])
         if not rules:
             return Fact(title, "–", [missing["dilatancy"]])
-        lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
+        friction = self.number("basic_friction_angle")
+        source = str(friction.estimate.reason)
+        lines = [f"phi_b = {short(friction.value)}° {source}"] if source else []
+        lines += [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
         lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))

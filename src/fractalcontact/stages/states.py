@@ -21,7 +21,9 @@ from ..joint.overlap import load_warning, node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..laws.contact_strength import SAMPLED_BY
 from ..laws.reference_states import solve_reference_stiffness
+from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
@@ -105,6 +107,8 @@ def state_stages(
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)
+    if DIP in dilatancy:
+        dilatancy.update(_of_sampling(domains, joints["composite"], loading))
     left = left_of_fields(fields)
     fitted = settings.scaling_range
     scaling = scaling_over_resolutions(curves, domains, spacing, left=left, fit_range=fitted)
@@ -157,3 +161,19 @@ def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Repor
         loads=forces_of(settings.dilatancy_loads, area),
         reference=float(forces_of([settings.map_load], area)[0]),
     )
+
+
+def _of_sampling(
+    domains: xr.Dataset, composites: xr.DataArray, loading: JointLoading
+) -> dict[str, xr.DataArray]:
+    """Variables of :data:`laws.contact_strength.SAMPLED_BY`; the amplitude is at one offset."""
+    clusters = domains["clusters"].sel(resolution=domains["resolution"].min(), drop=True)
+    clusters = clusters.rename(direction="contact_direction")
+    (offset,) = loading.offsets
+    composite = composites.sel(offset=offset, method="nearest").values
+    try:
+        amplitude = amplitude_error(composite, tuple(loading.spacing))
+    except ValueError:  # flush faces have no waves
+        amplitude = 0.0
+    values = {"contact_clusters": clusters, "amplitude_error": xr.DataArray(amplitude)}
+    return {name: values[name].assign_attrs(cf_attrs(*SAMPLED_BY[name])) for name in SAMPLED_BY}

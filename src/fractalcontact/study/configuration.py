@@ -297,6 +297,7 @@ def _material(config, material, where, scanned: bool) -> Material:
         poisson=poisson,
         e_star=modulus / (2 * (1 - poisson**2)),
         basic_friction_angle=material.basic_friction_angle,
+        basic_friction_angle_is=material.basic_friction_angle_is,
         joint_wall_strength=strength,
         hardness=hardness,
     )
