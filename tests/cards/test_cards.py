@@ -20,7 +20,7 @@ from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
-from fractalcontact.core.labels import printable
+from fractalcontact.core.labels import BOUNDARIES, printable
 from fractalcontact.core.subject import Subject
 from fractalcontact.laws.strength import OFF_LENGTHS
 from fractalcontact.report.published import Number, Row
@@ -319,3 +319,19 @@ def test_methods_name_the_laws_that_were_fitted():
 def test_a_card_is_written_whole(tmp_path, cards):
     write_card(cards["pair"], tmp_path)
     assert read_card(tmp_path / "cards/pair.json") == cards["pair"]
+
+
+def test_a_card_says_what_lies_beyond_its_window_and_how_phi_b_is_known(cards):
+    """In a field, in the methods, and first in what would help where phi_b is assumed."""
+    for card in cards.values():
+        free = card["boundary"] == BOUNDARIES["free"]
+        assert ("elastic half-spaces" in card["methods"]) == free
+        assert (card["boundary"] in card["methods"]) != free
+        friction = card["entries"]["basic_friction_angle"]
+        assumed = friction.get("note") == "assumed" and card["direction"] != "none"
+        assert card["trust"]["help"].startswith("measure phi_b") == assumed
+        strength = card["entries"]["barton_strength"]
+        for row in strength.get("values", ()):
+            if assumed and "value" in row:
+                assert row["low"] == pytest.approx(0.9 * row["value"], rel=1e-4)
+                assert row["value"] <= row["high"] <= 1.9 * row["value"] * (1 + 1e-4)

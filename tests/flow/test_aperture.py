@@ -5,6 +5,7 @@ import pytest
 
 from fractalcontact.flow.aperture import (
     barton_aperture,
+    permeability_law,
     reynolds_gradient,
     rms_slope,
     zimmerman_bodvarsson_aperture,
@@ -59,3 +60,19 @@ def test_a_closed_gap_says_why_nothing_flows():
     flow = flow_of(np.zeros((4, 4)), (1.0, 1.0), "x")
     assert flow.transmissivity == 0
     assert flow.reason == NO_PATH
+
+
+def test_a_permeability_that_falls_exponentially_has_its_constants():
+    """k = k_0 exp(-alpha sigma); states without a passage are left out, two give no law."""
+    pressure, k_0, alpha = np.array([0.5, 1.0, 5.0, 10.0, 25.0]), 2e-4, 0.04
+    k = k_0 * np.exp(-alpha * pressure)
+    transmissivity = (12 * k) ** 1.5 / 12
+    transmissivity[1] = 0
+    found = permeability_law(pressure, transmissivity)
+    assert found["permeability_k_0"].value == pytest.approx(k_0)
+    assert found["permeability_alpha"].value == pytest.approx(alpha)
+    assert found["permeability_alpha"].low == pytest.approx(alpha, rel=1e-6)
+    scattered = permeability_law(pressure, transmissivity * np.array([1, 1, 1.2, 0.8, 1.1]))
+    alpha_of = scattered["permeability_alpha"]
+    assert alpha_of.low < alpha < alpha_of.high
+    assert not permeability_law(pressure[:3], transmissivity[:3])["permeability_alpha"].known

@@ -7,9 +7,15 @@ import pytest
 from made_settings import made_settings
 from made_stages import scan, stages_of
 
+from fractalcontact.core.limits import FRICTION_FACTORS
 from fractalcontact.joint.contact_dips import PARTS, contact_dips, dips_by_force
 from fractalcontact.joint.joint import composite_topography
-from fractalcontact.laws.contact_strength import contact_strength, friction_of_dips
+from fractalcontact.laws.contact_strength import (
+    OF_CONTACTS,
+    contact_strength,
+    friction_of_dips,
+    sampling_error,
+)
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
@@ -116,7 +122,9 @@ def test_parts_of_the_force_keep_its_mean_dip_and_split_nodes():
 
 
 def test_no_friction_angle_is_no_strength():
-    found = contact_strength(np.zeros((2, 1, 1, PARTS)), np.array([5.0]), np.nan)
+    found = contact_strength(
+        np.zeros((2, 1, 1, PARTS)), np.ones((1, 1)), 0.0, pressure=np.array([5.0]), angle=np.nan
+    )
     assert np.isnan(found["contact_strength"]).all()
     assert np.isnan(found["contact_truncated"]).all()
 
@@ -124,10 +132,47 @@ def test_no_friction_angle_is_no_strength():
 def test_an_interval_ends_where_every_angle_is_truncated():
     dips = np.zeros((2, 1, 1, PARTS))
     dips[0] = 39
-    found = contact_strength(dips, np.array([5.0]), BASIC)
+    found = contact_strength(dips, np.ones((1, 1)), 0.0, pressure=np.array([5.0]), angle=BASIC)
     ends = found["peak_contact_strength_low"], found["peak_contact_strength_high"]
     half = 5 * (np.tan(np.radians(BASIC + 39)) - np.tan(np.radians(BASIC)))
     most = 5 * np.tan(np.radians(70))
     peak = 5 * np.tan(np.radians(BASIC + 39))
     np.testing.assert_allclose(np.ravel(ends), [peak - half, most])
     assert half + peak > most
+
+
+def test_peaks_have_the_uncertainty_of_the_basic_friction_angle():
+    """0.9 to 1.9 times if phi_b is assumed, 13 % if it is measured; never beyond 70 degrees."""
+    settings = settings_of(offsets=[0.3, 0.5], map_offset=0.3)
+    rock = replace(settings.material, basic_friction_angle=BASIC, joint_wall_strength=50.0)
+    widths = {}
+    for source, (low, high) in FRICTION_FACTORS.items():
+        material = replace(rock, basic_friction_angle_is=source)
+        made = stages_of(
+            "made", [scan(saw_teeth(5.0), SPACING)], replace(settings, material=material), SOLVER
+        )["strength"].squeeze()
+        assert made.attrs["basic_friction_angle_is"] == source
+        tau = float(made["barton_strength"])
+        steepest = 5 * np.tan(np.radians(70))
+        assert made["barton_strength_low"] == pytest.approx(low * tau)
+        assert made["barton_strength_high"] == pytest.approx(min(high * tau, steepest))
+        for name in ("peak_strength", "peak_contact_strength"):
+            value, ends = made[name], (made[f"{name}_low"], made[f"{name}_high"])
+            assert ends[0] <= low * value * (1 + 1e-9)
+            assert ends[1] >= min(high * value, steepest) * (1 - 1e-9)
+        widths[source] = float(made["peak_strength_high"] - made["peak_strength_low"])
+    assert widths["measured"] < widths["assumed"] / 3
+
+
+def test_error_over_realisations_falls_with_the_number_of_contacts():
+    """Equal dips have none by count; what they add to phi_b scatters with the amplitude."""
+    dips = np.tile([10.0, 30.0], (2, 1, 50))  # two offsets, one load
+    few, many = sampling_error(dips, np.array([[4.0], [100.0]]), 0.0, np.array([5.0]), BASIC)[:, 0]
+    friction = np.tan(np.radians(BASIC + np.array([10.0, 30.0])))
+    assert few == pytest.approx(1.96 * OF_CONTACTS * 5 * np.ptp(friction) / 2 / 2, rel=1e-3)
+    assert many == pytest.approx(few / 5)
+    equal = np.full((1, 1, 100), 20.0)
+    assert sampling_error(equal, np.ones((1, 1)), 0.0, np.array([5.0]), BASIC) == pytest.approx(0)
+    above = np.tan(np.radians(BASIC + 20)) - np.tan(np.radians(BASIC))
+    by_amplitude = sampling_error(equal, np.ones((1, 1)), 0.1, np.array([5.0]), BASIC)
+    assert by_amplitude == pytest.approx(1.96 * 5 * 0.1 * above, rel=1e-3)

@@ -31,6 +31,7 @@ SOLVER = replace(solver_settings({}, "tiny"), rtol=1e-8)
 ROUNDING = 1e-14
 MADE_OF_SPECIMEN = list(OF_SPECIMENS)
 
+_ENDS = ("low", "high")
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
 #: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at
 #: 1 MPa; stiffnesses at 1, 5 and 10 MPa; a spacing in words; Barton's hydraulic aperture, a law in
@@ -48,10 +49,12 @@ ABSOLUTE = {
         for end in ("", "_low", "_high")
     ),
     *("barton_slope_angle", "peak_over_barton"),
+    *(f"{name}_{end}" for name in ("barton_strength", "barton_scaled_strength") for end in _ENDS),
     "value",
     "shifted_ratio",  # by 0.1 mm
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
     *("reference_pressure", "reference_stiffness", "reference_stiffness_reason"),
+    "reference_stiffness_error",
     *("reference_stiffness_total", "reference_stiffness_total_of_population"),
     *("seated_d_0", "seated_d_0_low", "seated_d_0_high"),
     *("barton_aperture", "reynolds_gradient_along", "reynolds_gradient_across"),

@@ -7,8 +7,8 @@ from typing import Any
 
 from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..pages.first_screen import is_synthetic, model_of
-from ..pages.lights import lights_of, trust_of
+from ..pages.first_screen import boundary_of, is_synthetic, model_of
+from ..pages.lights import lights_of, trust_in
 from ..pages.summary import lengths_of
 from ..report.published import read_at, row_of, shown_in, stages_of
 from .entries import entries, entry_of, number, rounded
@@ -42,13 +42,14 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "faces": OPPOSITE[subject["specimens"].attrs["opposite"]],
         "material": printable(subject.settings["material"]["name"]),
         "model": model,
+        "boundary": boundary_of(subject),
         "direction": subject.direction,
         "geometry": geometry_of(subject),
         "window": str(subject["specimens"].attrs["window_note"]),
         "entries": {row.name: entry_of(row, subject, model) for row in entries()},
         "errors": errors_of(subject),
         "lights": [asdict(light) for light in lights],
-        "trust": trust_of(lights)._asdict(),
+        "trust": trust_in(subject)._asdict(),
         "licence": LICENCE,
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),

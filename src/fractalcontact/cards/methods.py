@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ..core.labels import BOUNDARIES
 from ..core.text import short, with_unit
 
 #: Sources that the paragraph may name.
@@ -51,9 +52,16 @@ def _contact(card):
         if card["model"] == "elastic"
         else f"with the pressure bounded by the hardness, {card['model'].partition('= ')[2]}"
     )
+    constants = f"(E = {with_unit(modulus, 'MPa')}, Poisson's ratio {short(poisson)})"
+    boundary = card["boundary"]
+    blocks = (
+        f"Both blocks are elastic half-spaces {constants}, {capped}."
+        if boundary == BOUNDARIES["free"]
+        else f"Both blocks are elastic {constants}, {capped}. The window is {boundary}, so that "
+        "the blocks do not settle as a whole (w_b = 0): closure is the approach of the mean planes."
+    )
     return (
-        f"Both blocks are elastic half-spaces (E = {with_unit(modulus, 'MPa')}, Poisson's ratio "
-        f"{short(poisson)}), {capped}. The frictionless normal contact problem was solved at "
+        f"{blocks} The frictionless normal contact problem was solved at "
         "every node of the scan until the complementarity conditions held, after Borri-Brunetto "
         "et al. (1999). Contact areas are corrected for their perimeter (Yastrebov et al. 2017)."
     )

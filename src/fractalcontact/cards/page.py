@@ -36,6 +36,7 @@ def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> 
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: entry for key, entry in printed.items() if key != "hardness"}),
         "hardest": entries.get("hardest_hardness", {}).get("value", math.nan),
+        "permeability": permeability_words(entries),
         "caveat": aperture_caveat(entries.get("shifted_ratio", {}).get("value", math.nan)),
         # The change with the hardness has a column of its own.
         "errors": errors_of(card, without=("model",)),
@@ -109,6 +110,27 @@ def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dic
         (pressure, [row_at(curve, pressure) | {"unit": curve["unit"]} for curve in curves])
         for pressure in pressures
     ]
+
+
+def permeability_words(entries: Mapping[str, Any]) -> str:
+    """Constants of the permeability over pressure, by branch; empty without any."""
+    constants = {
+        row["at"]["branch"]: [
+            f"{short(one['value'])} {ends_in_words(one)}".rstrip() for one in (row, alpha)
+        ]
+        for row, alpha in zip(
+            *(entries.get(f"permeability_{of}", {}).get("values", ()) for of in ("k_0", "alpha")),
+            strict=True,
+        )
+        if "value" in row and row["at"]["branch"] in ("load", "reload")
+    }
+    if not constants:
+        return ""
+    words = "; ".join(
+        f"on {branch}ing k_0 = {k_0} mm2, alpha = {alpha} per MPa"
+        for branch, (k_0, alpha) in constants.items()
+    )
+    return f"Permeability k = k_0 exp(-alpha sigma') along the sliding: {words} (fit alone)."
 
 
 def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:

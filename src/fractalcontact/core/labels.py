@@ -16,6 +16,13 @@ OPPOSITE = {
     "aperture": "aperture map: the opening between both faces",
 }
 
+#: Words for what lies beyond the edges of the window, by the setting ``boundary``.
+BOUNDARIES = {
+    "free": "alone on half-spaces",
+    "periodic": "repeated beyond its edges",
+    "mirrored": "mirrored at its edges",
+}
+
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
     """Attributes of a variable with the names of the CF conventions."""

@@ -6,6 +6,10 @@ from roughcontact.limits import RESOLVED_NODES as RESOLVED_NODES
 #: area was a third too large at 14 nodes, from 30 on within some per cent.
 CORRECTED_NODES = 30
 
+#: Fewest free nodes, between first touch and the hardness, that carry the change of the force of a
+#: yielding contact with a stiffness.
+MIN_FREE_NODES = 30
+
 #: Relative differences up to which quantities are nearly equal, flat or linear, and so in part.
 NEARLY, LOOSELY = 0.1, 0.25
 
@@ -21,6 +25,11 @@ JRC_RANGE = (0.0, 20.0)
 #: Largest total friction angle of Barton's law, degrees (Barton & Choubey, Rock Mech. 10 (1977) 1):
 #: at low stress the logarithm would take it past the vertical.
 LARGEST_FRICTION_ANGLE = 70.0
+
+#: Strength of a joint over that computed with the stated phi_b, ends of an interval: phi_b measured
+#: on flat faces, the scatter of one laboratory; assumed, 5 to 95 % of 288 published shear tests
+#: beside Barton's law (median 1.23).
+FRICTION_FACTORS = {"measured": (0.87, 1.13), "assumed": (0.9, 1.9)}
 
 #: Largest fraction of the sub-windows of a size with a truncated angle; beyond it their mean
 #: strength is a bound and no result.
@@ -82,3 +91,5 @@ CONDUCTANCE_EXPONENTS = (0.95, 1.0)
 
 #: Largest relative difference between two pressures that are equal but for rounding.
 PRESSURE_ROUNDING = 1e-9
+#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
+HARDEST = 3.0

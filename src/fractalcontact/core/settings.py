@@ -7,7 +7,7 @@ stands for "auto".
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import Field
@@ -28,6 +28,8 @@ from .keys import (
 )
 
 S = TypeVar("S")
+#: Boundaries of a window: it stands alone on the half-space, or is mirrored at its edges.
+FREE, MIRRORED = "free", "mirrored"
 _Loads = Annotated[list[Load], Field(min_length=1)]
 _Directions = Annotated[
     list[str], StatedAs(Annotated[list[Direction], Field(min_length=1), *different])
@@ -70,10 +72,14 @@ class Elastic:
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction angle and wall strength of a material; NaN if not stated."""
+    """Friction angle and wall strength of a material; NaN if not stated.
+
+    ``basic_friction_angle_is`` is "measured" or "assumed".
+    """
 
     basic_friction_angle: float
     joint_wall_strength: float
+    basic_friction_angle_is: str = field(default="assumed", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -191,6 +197,18 @@ class JointSettings:
         ),
     ]
     """offset of the contact maps over resolutions and loads"""
+    boundary: Annotated[
+        str,
+        StatedAs(Literal["free", "periodic", "mirrored"]),
+        key(
+            "free, periodic or mirrored: what lies beyond the edges of the window",
+            unsaid="`mirrored` of a scan, `free` of an embedded specimen",
+        ),
+    ] = field(default=FREE, kw_only=True)
+    """what lies beyond the edges of the window: `free`, an unloaded half-space, as in the paper;
+    `mirrored`, its reflection, so that it is the section of a column between frictionless walls, as
+    a laboratory specimen is; `periodic`, its repetition, which has a seam. Only a `free` window
+    settles as a whole (w_b)"""
 
 
 @dataclass(frozen=True)
@@ -266,7 +284,8 @@ class MeasuredTest:
     of the flow, ``direction`` that of sliding. Displacement is counted from ``seat``; ``pressure``
     is held, ``largest_pressure`` was carried before (MPa). ``compliance`` is that of the rock
     between the gauge points (mm/MPa), ``error`` the half-width of the 95 % interval of a reading
-    (mm or MPa), ``calibrate`` "modulus" or "hardness".
+    (mm or MPa), ``calibrate`` "modulus" or "hardness", ``datum_pressure`` that of the reading of a
+    flow test which sets the rigid position of the faces.
     """
 
     kind: str
@@ -282,6 +301,7 @@ class MeasuredTest:
     compliance: float = 0.0
     error: float = math.nan
     calibrate: str = ""
+    datum_pressure: float = math.nan
 
     @property
     def label(self) -> str:

@@ -12,17 +12,17 @@ from roughcontact.contact.path import loaded_state
 from roughcontact.contact.state import ContactState
 
 from ..core.datasets import labelled
+from ..core.limits import HARDEST, REFERENCE_PRESSURES
 from ..flow.aperture import crushed_reason
 from ..flow.cubic_law import WAYS, flow_of
 from ..flow.network import hydraulic_aperture
 from ..joint.joint import sliding_axis
+from ..laws.reference_states import further_pressures, with_curve_stiffness
 from ..laws.seated_laws import at_reference_pressures
 from ..states.state_scalars import aperture
+from ..states.subgrid import state_quantities
 from ..states.sweep import load_steps
-from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values, chosen_loads
-
-#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
-HARDEST = 3.0
+from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_dimension, chosen_loads
 
 _LOADS = ("normal_force",)
 _IF = f"if contacts are {HARDEST:g} times as hard; missing where they are elastic"
@@ -54,16 +54,15 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
     NaN where contacts are elastic. Raises `NotConverged`.
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
-    hardest, gap, flows = _solved(curve, hardness)
+    hardest, gap, flows, at_reference = _solved(curve, hardness)
     by_quantity = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
-    pressure = curve.curve["nominal_pressure"].values
     values = {
         "hardest_hardness": hardness if np.isfinite(hardness) else np.nan,
         "hardest": hardest,
         "mean_gap_hardest": gap,
         "contact_fraction_hardest": by_quantity["area_corrected"] / curve.loading.area,
         "seated_closure_hardest": _seated(curve, by_quantity["separation"]),
-        "reference_stiffness_hardest": at_reference_pressures(pressure, by_quantity["stiffness"]),
+        "reference_stiffness_hardest": at_reference,
         **{f"transmissivity_{way}_hardest": flow for way, flow in flows.items()},
         **{
             f"hydraulic_aperture_{way}_hardest": hydraulic_aperture(flow)
@@ -75,28 +74,42 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
 
 def _solved(
     curve: LoadCurve, hardness: float
-) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-    """Values (quantity, normal_force) at a hardness, mean gaps, and T by way; NaN if infinite."""
+) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray], np.ndarray]:
+    """Values (quantity, normal_force) at a hardness, mean gaps, T by way, reference stiffness.
+
+    NaN if it is infinite.
+    """
     values = curve.over_quantities()
     gaps = np.full(len(curve.forces), np.nan)
     flows = {way: gaps.copy() for way in WAYS}
     if not np.isfinite(hardness):
-        return values, gaps, flows
+        return values, gaps, flows, np.full(len(REFERENCE_PRESSURES), np.nan)
     loading = curve.loading
     drawn = chosen_loads(curve, loading.settings.drawn_loads)
     along = "yx"[sliding_axis(loading.direction)] if loading.slides else "x"
     axes = dict(zip(WAYS, (along, "xy"["yx".index(along)]), strict=True))
     solving = {**loading.solving, "hardness": hardness}
     where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
-    states = load_steps(curve.composite, curve.space, curve.forces, solving, where)
-    for place, state in enumerate(states):
+    further = further_pressures(curve.forces / loading.area) * loading.area
+    every = np.union1d(curve.forces, further)
+    of_curve = {name: np.full(len(every), np.nan) for name in ("stiffness", "closure")}
+    states = load_steps(curve.composite, curve.space, every, solving, where)
+    for number, state in enumerate(states):
+        quantities = state_quantities(state, highest, curve.reference)
+        for name, numbers in of_curve.items():
+            numbers[number] = quantities[name]
+        if every[number] not in curve.forces:
+            continue
+        place = int(np.searchsorted(curve.forces, every[number]))
         limits = loading.settings.box_range
-        values[:, place] = budget_values(state, highest, curve.reference, limits)
+        values[:, place] = [*quantities.values(), budget_dimension(state, limits)]
         gaps[place] = aperture(state).mean()
         if place in drawn:
             for way, flow in _flows(state, axes).items():
                 flows[way][place] = flow
-    return values, gaps, flows
+    pressure = every / loading.area
+    stiffness = with_curve_stiffness(pressure, of_curve["stiffness"], of_curve["closure"])
+    return values, gaps, flows, at_reference_pressures(pressure, stiffness)
 
 
 def _flows(state: ContactState, axes: Mapping[str, str]) -> dict[str, float]:

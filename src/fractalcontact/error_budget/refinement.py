@@ -204,14 +204,19 @@ def budget_values(
 ) -> list[float]:
     """Values of :data:`BUDGET_QUANTITIES` of a state.
 
-    ``highest`` and ``reference`` as for :func:`states.subgrid.state_quantities`; ``limits`` are
-    the smallest and largest box of Delta_sigma, mm, which is NaN if they are not finite.
+    ``highest`` and ``reference`` as for :func:`states.subgrid.state_quantities`, ``limits`` as for
+    :func:`budget_dimension`.
     """
-    dimension = np.nan
-    if limits is None or np.isfinite(limits).all():
-        side = float(np.sqrt(state.space.cell_area))
-        dimension = dimension_of_domain(state.in_contact, side, fit_range=limits).dimension
-    return [*state_quantities(state, highest, reference).values(), dimension]
+    quantities = state_quantities(state, highest, reference)
+    return [*quantities.values(), budget_dimension(state, limits)]
+
+
+def budget_dimension(state: ContactState, limits: tuple[float, float] | None) -> float:
+    """Delta_sigma of a state over boxes within limits, mm; NaN if they are not finite."""
+    if limits is not None and not np.isfinite(limits).all():
+        return np.nan
+    side = float(np.sqrt(state.space.cell_area))
+    return dimension_of_domain(state.in_contact, side, fit_range=limits).dimension
 
 
 def _errors(curve, levels, finest) -> Refinement:

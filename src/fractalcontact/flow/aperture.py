@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..core.estimate import Estimate
+from ..core.fitting import fit_line
 from ..core.text import percent
 
 #: Quantiles of the aperture that are kept.
@@ -81,6 +83,31 @@ def barton_aperture(mechanical: ArrayLike, jrc: float) -> np.ndarray:
         return np.full_like(micrometres, np.nan)
     hydraulic = micrometres**2 / jrc**2.5
     return np.where(hydraulic <= micrometres, hydraulic, np.nan) / 1e3
+
+
+#: Constants of the permeability over pressure: unit, long name.
+PERMEABILITY = {
+    "permeability_k_0": (
+        "mm2",
+        "k_0 of k = k_0 exp(-alpha sigma_0), k = h_h^2/12, along the sliding",
+    ),
+    "permeability_alpha": ("MPa-1", "alpha of the same law"),
+}
+
+
+def permeability_law(pressure: ArrayLike, transmissivity: ArrayLike) -> dict[str, Estimate]:
+    """:data:`PERMEABILITY` of k = k_0 exp(-alpha sigma) by least squares in ln k.
+
+    k = h_h^2/12 = (12 T)^(2/3)/12. Codes of flow take both constants, of the effective stress:
+    the pressure on the joint where its water has none. Pressures are in MPa, T in mm3; states
+    without a passage or without T are left out. The intervals are those of the fit alone.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logarithm = np.log(np.cbrt(12 * np.asarray(transmissivity, float)) ** 2 / 12)
+    logarithm = np.where(np.isfinite(logarithm), logarithm, np.nan)
+    slope, intercept, _ = fit_line(pressure, logarithm)
+    of_both = intercept.mapped(np.exp), slope.mapped(np.negative, falling=True)
+    return dict(zip(PERMEABILITY, of_both, strict=True))
 
 
 #: Water at 20 degrees: viscosity, MPa s, and density, N s2/mm4.

@@ -7,18 +7,21 @@ import numpy as np
 import xarray as xr
 
 from roughcontact.contact.path import BRANCHES, LOAD, BranchState, load_path, loaded_state
+from roughcontact.contact.solve import solve_contact
 from roughcontact.contact.state import ContactState
+from roughcontact.elastic.boundaries import MIRRORED, PERIODIC
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import PRESSURE_ROUNDING
+from ..core.limits import PRESSURE_ROUNDING, REFERENCE_PRESSURES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement, interface_closure, interface_stiffness
+from ..states.settlement import interface_closure, interface_stiffness, window_settlement
 from .closure import determined_closure, stiffness_reason
+from .reference_states import further_pressures, stored_states
 from .seated_laws import at_reference_pressures, within_span
 
 _STATES = ("branch", "normal_force")
@@ -48,7 +51,11 @@ _TABLE: dict[str, tuple[Any, str, str]] = {
 
 
 def branches(
-    composite: np.ndarray, loaded: Sequence[ContactState], solving: Mapping[str, Any], where: str
+    composite: np.ndarray,
+    loaded: Sequence[ContactState],
+    solving: Mapping[str, Any],
+    where: str,
+    further: Sequence[float] | np.ndarray = (),
 ) -> xr.Dataset:
     """States of loading, of unloading from the largest load to none, and of reloading to it.
 
@@ -59,24 +66,31 @@ def branches(
     with the state that loading ended with. Raises `NotConverged`.
 
     Below the largest load the contact is elastic on the heights that loading has left: unloading
-    and reloading are one curve, solved once, and where nothing has yielded that of loading.
+    and reloading are one curve, solved once, and where nothing has yielded that of loading. Under
+    ``further`` forces, N, below the largest and where nodes have yielded, that curve is solved too:
+    its stiffness there is ``further_stiffness`` over ``further_force``.
     """
     load = [loaded_state(state) for state in loaded]
     forces, top = np.array([state.force for state in load]), load[-1]
     again, residual = load, 0.0
+    between: dict[float, float] = {}
     if top.yielded.any():
+        falling = np.union1d(forces[:-1], further)[::-1]
         try:
             *down, empty, full = load_path(
                 composite,
                 top.contact.space,
-                forces=[*forces[-2::-1], 0.0, forces[-1]],
+                forces=[*falling, 0.0, forces[-1]],
                 loaded=top.contact,
                 **solving,
             )
         except NotConverged as error:
             error.add_note(f"{where}, unloading from F = {forces[-1]:g} N")
             raise
-        again, residual = [*down[::-1], full], empty.closure
+        by_force = dict(zip(falling.tolist(), down, strict=True))
+        again = [*(by_force[force] for force in forces[:-1].tolist()), full]
+        residual = empty.closure
+        between = {force: by_force[force].contact.stiffness for force in np.sort(further).tolist()}
     first, second = ([_numbers(state) for state in states] for states in (load, again))
     # Unloading is elastic and begins at the closure where loading ended.
     rows = [first, [*second[:-1], second[-1] | {"closure": top.closure}], second]
@@ -90,7 +104,12 @@ def branches(
         "yielded": top.yielded,
     }
     loads = ("normal_force", forces, cf_attrs("N", "normal force F"))
-    return labelled_dataset(_TABLE, values, {"branch": list(BRANCHES), "normal_force": loads})
+    data = labelled_dataset(_TABLE, values, {"branch": list(BRANCHES), "normal_force": loads})
+    if between:
+        words = cf_attrs("N/mm", "stiffness dF/dw on reloading under further forces")
+        data["further_stiffness"] = ("further_force", list(between.values()), words)
+        data.coords["further_force"] = list(between)
+    return data
 
 
 def _numbers(state: BranchState) -> dict[str, float]:
@@ -120,7 +139,25 @@ _OF_INTERFACE = {
         "MPa/mm",
         "tangent stiffness of the interface at a pressure",
     ),
+    "reference_stiffness_error": (
+        ("branch", "reference_pressure"),
+        "MPa/mm",
+        "error of it on reloading by what lies beyond the edges of the window, half-width",
+    ),
+    "reload_reason": ((), "1", "why there is no tangent stiffness on unloading and reloading"),
 }
+#: Factor on the largest relative difference of the stiffness on reloading between a mirrored and a
+#: periodic window. With it the middle of a window of twice the side lies within the error
+#: (docs/verification.md).
+EDGE_FACTOR = 2.0
+#: Largest relative error of a stiffness on reloading that is stated.
+MAX_EDGE_ERROR = 1.0
+DECIDED_BY_EDGES = "what lies beyond the edges of the window changes it by as much as itself"
+#: Reason why the stiffness on reloading is no result of a free window whose contacts crush.
+KEPT_BOWL = (
+    "a free window keeps the bowl of its own settlement when it is unloaded, and would reload too "
+    "softly: write 'boundary: mirrored'"
+)
 
 
 def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset) -> xr.Dataset:
@@ -139,31 +176,49 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     forces = curve["normal_force"].values
     composite = prefractal(loading.composite(int(cells)), factor)
     space = loading.half_space(composite.shape, factor)
-    loaded = _solved_states(composite, space, curve, mapped, loading.solving["hardness"])
+    loaded = stored_states(composite, space, curve, mapped, loading.solving["hardness"])
     where = f"specimen {loading.specimen.attrs['name']}"
-    data = branches(composite, loaded, loading.solving, where)
-    data["stiffness"] = _with_loading(data, curve["stiffness"].reset_coords(drop=True))
-    sides = np.multiply(space.shape, space.spacing)
-    settlement = bulk_settlement(forces, space.modulus, *sides)
     pressure = forces / loading.area
+    further = np.empty(0) if space.is_free else further_pressures(pressure)
+    data = branches(composite, loaded, loading.solving, where, further * loading.area)
+    data["stiffness"] = _with_loading(data, curve["stiffness"].reset_coords(drop=True))
     flush = xr.DataArray(bool(np.ptp(composite) == 0))
-    bulk_settled = xr.DataArray(settlement, dims="normal_force")
-    closure = interface_closure(data["closure"], bulk_settled, flush)
+    settlement = xr.DataArray(window_settlement(space, forces), dims="normal_force")
+    closure = interface_closure(data["closure"], settlement, flush)
     closure = determined_closure(closure, flush).transpose(*_STATES)
     at_seat = np.isclose(pressure, seating, rtol=PRESSURE_ROUNDING, atol=0)
     seat = closure[0].where(at_seat).sum(min_count=1)
     beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
-    bulk = xr.DataArray(pressure / settlement, dims="normal_force")
     compliance = 1 / (data["stiffness"] / loading.area)
-    stiffness = interface_stiffness(compliance, 1 / bulk).where(~flush)
+    stiffness = interface_stiffness(compliance, settlement / pressure).where(~flush)
     no_total = curve["interface_stiffness_reason"].reset_coords(drop=True)
     reason = stiffness_reason(stiffness, data["stiffness"], flush, no_total)
+    keeps_bowl = space.is_free and bool(data["yielded"].any())
+    if keeps_bowl:
+        on_load = stiffness["branch"] == LOAD
+        stiffness, reason = stiffness.where(on_load), reason.where(on_load, KEPT_BOWL)
+    at_reference = _at_reference(data, stiffness, curve, loading.area)
+    apart = np.nan
+    if data["yielded"].any() and not space.is_free:
+        at = np.array(REFERENCE_PRESSURES)
+        at = at[np.isfinite(at_reference[-1]) & (at < pressure[-1])]
+        apart = _edge_error(composite, loaded[-1], at * loading.area, loading.solving, where)
+    why = KEPT_BOWL if keeps_bowl else ""
+    if apart > MAX_EDGE_ERROR:
+        why = DECIDED_BY_EDGES
+        at_reference[1:] = np.full_like(at_reference[1:], np.nan)
+    data = data.drop_vars(["further_stiffness", "further_force"], errors="ignore")
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
         "interface_stiffness": stiffness.values,
         "interface_stiffness_reason": reason.values,
-        "reference_stiffness": [at_reference_pressures(pressure, row) for row in stiffness.values],
+        "reference_stiffness": at_reference,
+        "reference_stiffness_error": [
+            np.full(len(row), np.nan) if branch == LOAD else apart * row
+            for branch, row in zip(BRANCHES, at_reference, strict=True)
+        ],
+        "reload_reason": why,
     }
     data.coords["reference_pressure"] = curve["reference_pressure"]
     return data.assign(labelled(_OF_INTERFACE, values)).assign_coords(
@@ -181,26 +236,51 @@ def _with_loading(data: xr.Dataset, loaded: xr.DataArray) -> xr.DataArray:
     return data["stiffness"].where(~same, loaded).transpose(*_STATES)
 
 
-def _solved_states(
-    composite: np.ndarray,
-    space: HalfSpace,
-    curve: xr.Dataset,
-    mapped: xr.Dataset,
-    hardness: float,
-) -> list[ContactState]:
-    """States of a closure curve, from their pressures, which are stored in single precision.
+def _at_reference(
+    data: xr.Dataset, stiffness: xr.DataArray, curve: xr.Dataset, area: float
+) -> list[np.ndarray]:
+    """Stiffness of each branch at the reference pressures, MPa/mm, as solved there; A_0 in mm2."""
+    pressure = data["normal_force"].values / area
+    rows = []
+    for branch in BRANCHES:
+        if branch == LOAD or not data["yielded"].any():
+            rows.append(curve["reference_stiffness"].values)
+            continue
+        at, values = pressure, stiffness.sel(branch=branch).values
+        if "further_stiffness" in data:
+            at = np.concatenate([at, data["further_force"].values / area])
+            values = np.concatenate([values, data["further_stiffness"].values / area])
+        order = np.argsort(at)
+        rows.append(at_reference_pressures(at[order], values[order]))
+    return rows
 
-    The stored gap is 0 in contact; that of a node that yields lies below, by what is pressed in.
+
+def _edge_error(
+    composite: np.ndarray,
+    top: ContactState,
+    forces: np.ndarray,
+    solving: Mapping[str, Any],
+    where: str,
+) -> float:
+    """Relative error of the stiffness on reloading by the edges of a mirrored or periodic window.
+
+    ``top`` is the state under the largest load, ``forces`` are those of the reference pressures, N.
+    The joint is loaded and unloaded with the other of both boundaries too.
     """
-    clearance = composite.max() - composite
-    states = []
-    for force, closure, residual in zip(
-        curve["normal_force"].values, curve["closure"].values, curve["residual"].values, strict=True
-    ):
-        stored = mapped["pressure"].sel(normal_force=force).values
-        pressure = np.where(stored >= np.float32(hardness), hardness, stored.astype(float))
-        displacement = space.displacement(pressure)
-        gap = clearance - closure + displacement
-        numbers = float(closure), float(force), float(residual), 0, space, hardness
-        states.append(ContactState(pressure, displacement, gap, *numbers))
-    return states
+    space = top.space
+    if not len(forces):
+        return np.nan
+    boundary = PERIODIC if space.boundary == MIRRORED else MIRRORED
+    other = HalfSpace(space.shape, space.spacing, space.modulus, boundary=boundary)
+    falling = np.sort(forces)[::-1]
+    try:
+        start = solve_contact(composite, other, force=top.force, start=top, **solving)
+        of_both = [
+            load_path(composite, state.space, forces=falling.tolist(), loaded=state, **solving)
+            for state in (top, start)
+        ]
+    except NotConverged as error:
+        error.add_note(f"{where}, {boundary} window")
+        raise
+    stiffness = np.array([[state.contact.stiffness for state in path] for path in of_both])
+    return float(EDGE_FACTOR * np.abs(stiffness[1] / stiffness[0] - 1).max())

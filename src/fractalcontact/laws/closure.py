@@ -6,6 +6,7 @@ import xarray as xr
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.settings import FREE
 from ..states.settlement import bulk_settlement, interface_closure, interface_stiffness
 from ..states.states import OFFSETS, STATE_VARIABLES, WITH_SCATTER, error_attrs
 from .closure_laws import add_closure_laws, at_twice
@@ -22,7 +23,7 @@ FULL_CONTACT = "contact is so full that joint and blocks together are no softer 
 def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArray:
     """Interface closure, mm, where it is determined: missing where contact is too full for one.
 
-    Faces in full contact are loaded like a rigid punch, which settles less than the uniform
+    Free faces in full contact are loaded like a rigid punch, which settles less than the uniform
     pressure of w_b does: by some 0.08 F/(E* b) for a square. Where the rough faces close by less
     than that, w - w_b is negative, which no closure is, and says nothing of the interface. Where
     faces are flush nothing closes, and that is known.
@@ -118,7 +119,8 @@ def interface_states(states: xr.Dataset, window: tuple[float, float], e_star: fl
     Without the errors, separation and seats of :func:`interface_curves`.
     """
     result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
-    settlement = bulk_settlement(states["normal_force"].values, e_star, *window)
+    boundary = states.attrs.get("boundary", FREE)
+    settlement = bulk_settlement(states["normal_force"].values, e_star, *window, boundary=boundary)
     _add_interface(result, settlement, window[0] * window[1])
     return result
 
@@ -155,8 +157,8 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     ):
         attrs = cf_attrs("1", words.format(fewest))
         added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
-    bulk = curves["nominal_pressure"] / curves["bulk_settlement"]
-    stiffness = interface_stiffness(1 / (curves["stiffness"] / area), 1 / bulk).where(~flush)
+    bulk = curves["bulk_settlement"] / curves["nominal_pressure"]
+    stiffness = interface_stiffness(1 / (curves["stiffness"] / area), bulk).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
@@ -266,7 +268,10 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     result["elastic_dilatancy"].attrs = cf_attrs("mm", "elastic dilatancy delta = delta_r - w_int")
     for name in ("separation", "separation_error"):
         result[name] = finest[name].transpose(*result["elastic_dilatancy"].dims)
-    misses = left_out_misses(finest["normal_force"].values, finest["closure"], finest["stiffness"])
+    # Flush faces close with their blocks alone: where those do not settle, nothing is interpolated.
+    closes = (finest["bulk_settlement"] > 0) | (finest["interface_closure"] > 0)
+    closure = finest["closure"].where(closes)
+    misses = left_out_misses(finest["normal_force"].values, closure, finest["stiffness"])
     result["left_out_error"] = abs(misses).transpose(*result["elastic_dilatancy"].dims)
     result["left_out_error"].attrs = cf_attrs(
         "mm", "error of delta when interpolated from the states at the loads beside this one"

@@ -162,3 +162,30 @@ def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarr
         return np.full(len(REFERENCE_PRESSURES), np.nan)
     wanted, x = np.log(REFERENCE_PRESSURES), np.log(pressure[positive])
     return np.exp(np.interp(wanted, x, np.log(values[positive]), left=np.nan, right=np.nan))
+
+
+#: Smallest ratio of the pressures between which the slope of a closure curve is taken: the error
+#: of the closures is then a small part of their difference.
+MIN_STEP = 1.25
+
+
+def curve_stiffness(pressure: np.ndarray, closure: np.ndarray) -> np.ndarray:
+    """Stiffness d sigma/dw (n,) of a closure curve at its states, MPa/mm.
+
+    The slope of the parabola in ln(pressure) through each state and the nearest ones by a factor of
+    :data:`MIN_STEP` below and above. NaN where there is none on either side. Pressures (n,), MPa,
+    ascend; closures are in mm, NaN where unknown.
+    """
+    slopes = np.full(len(pressure), np.nan)
+    known = np.flatnonzero(np.isfinite(closure))
+    x, w = np.log(pressure[known]), closure[known]
+    for i, place in enumerate(known):
+        below = np.flatnonzero(x <= x[i] - np.log(MIN_STEP))
+        above = np.flatnonzero(x >= x[i] + np.log(MIN_STEP))
+        if not (below.size and above.size):
+            continue
+        a, b = below[-1], above[0]
+        down, up = x[i] - x[a], x[b] - x[i]
+        slope = (w[b] - w[i]) / up * down + (w[i] - w[a]) / down * up
+        slopes[place] = slope / (down + up)
+    return np.where(slopes > 0, pressure / np.where(slopes > 0, slopes, 1.0), np.nan)

@@ -18,7 +18,7 @@ from ..core.directions import DIRECTIONS
 from ..core.estimate import Estimate, names_of
 from ..core.intervals import mean_interval, t_quantile
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
+from ..core.limits import FRICTION_FACTORS, JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
 from ..core.per_curve import per_curve
 from ..core.settings import Friction, StrengthSettings
 from ..core.window import nominal_area, window_sides
@@ -27,7 +27,7 @@ from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
 from .contact_strength import NAMES as CONTACT_FIELDS
-from .contact_strength import contact_strength
+from .contact_strength import SAMPLED_BY, contact_strength
 
 #: Kinds of variants of a joint: this window, others of the scan, its quarters, other readings.
 OWN, WINDOW, QUARTER, READ = "this window", "other window", "quarter", "other reading"
@@ -171,7 +171,8 @@ def joint_strength(
             contact_strength, pressure=pressure, angle=material.basic_friction_angle
         )
         along = ("dip_step", "offset", "normal_force", "force_part")
-        result.update(per_curve({"dips": dilatancy[DIP]}, of_contact, CONTACT_FIELDS, along))
+        of_dips = {"dips": dilatancy[DIP], **{name: dilatancy[name] for name in SAMPLED_BY}}
+        result.update(per_curve(of_dips, of_contact, CONTACT_FIELDS, along))
     interval = "interval", result["midpoint"].values[0], result["midpoint"].attrs
     result = result.assign_coords(
         normal_force=dilatancy["normal_force"], offset=dilatancy["offset"], interval=interval
@@ -191,7 +192,39 @@ def joint_strength(
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
     ):
         result[name] = ((), float(getattr(material, name)), cf_attrs(units, words))
+    _add_friction_interval(result, material)
     return result
+
+
+#: Peak strengths by every rule, whose interval holds the uncertainty of phi_b.
+PEAKS = ("peak_strength", "peak_contact_strength", "barton_strength", "barton_scaled_strength")
+
+
+def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
+    """Intervals of the :data:`PEAKS`: their own errors and those of phi_b, by squares.
+
+    :data:`core.limits.FRICTION_FACTORS` are of a strength, not of an angle.
+    """
+    source = material.basic_friction_angle_is
+    for name in PEAKS:
+        if name not in strength:
+            continue
+        for end, factor in zip(("low", "high"), FRICTION_FACTORS[source], strict=True):
+            value = strength[name]
+            own = xr.zeros_like(value)
+            if f"{name}_{end}" in strength:
+                own = strength[f"{name}_{end}"] - value
+            elif f"{name}_error" in strength:
+                own = strength[f"{name}_error"]
+            half = np.hypot(own, (factor - 1) * value)
+            words = f"{end} end of it at 95 %, with phi_b as {source}"
+            limit = value + half if end == "high" else (value - half).clip(0)
+            # No rule gives more than that angle.
+            steepest = np.tan(np.radians(LARGEST_FRICTION_ANGLE)) * strength["nominal_pressure"]
+            limit = xr.where(limit > steepest, np.maximum(steepest, value), limit)
+            limit = limit.transpose(*value.dims).drop_vars(set(limit.coords) - set(value.coords))
+            strength[f"{name}_{end}"] = limit.assign_attrs(cf_attrs("MPa", words))
+    strength.attrs["basic_friction_angle_is"] = source
 
 
 _EACH, _LOAD = ("interval", "normal_force"), ("normal_force",)

@@ -1,6 +1,7 @@
 """Closure tests beside computed closure: from one datum, by the same laws, with one constant."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -152,6 +153,8 @@ def _row(
             f"{readings.x[-1]:.3g} MPa; add loads to the study"
         )
     span = computed.where(computed.x <= readings.x[-1])
+    apart = joint.apart(test, largest, datum, computed)
+    computed = replace(computed, error=np.hypot(computed.error, apart))
     row = {
         "readings": readings,
         # The readings on the axis of the stage ``closure``, which counts from the study's seat.

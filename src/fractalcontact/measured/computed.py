@@ -6,17 +6,20 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from roughcontact.contact.path import LOAD, load_path
+from roughcontact.contact.path import LOAD, BranchState, load_path
 from roughcontact.errors import NotConverged
 
 from ..core.errors import InputError
+from ..core.limits import HARDEST
 from ..core.reported import Reported
 from ..core.settings import MeasuredSettings, MeasuredTest
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement
+from ..states.settlement import window_settlement
 from .curve import Curve
 
+#: Relative error of a modulus as laboratories state it.
+MODULUS_ERROR = 0.1
 #: Largest pressure on a joint as a fraction of its hardness.
 CARRIED = 0.95
 #: Number of states of a solved branch, evenly spaced in the logarithm of the pressure.
@@ -29,12 +32,16 @@ class Joint:
 
     ``loading`` is at that offset alone; ``curve`` is the interface closure, mm, of resolved states
     on loading over the nominal pressure, MPa; ``seat_closure`` that at the seat of the study.
+    ``windows`` (n,) is its error over other windows at the points of ``curve``, mm, and ``hardest``
+    that closure if contacts are three times as hard, without points where they are elastic.
     """
 
     loading: JointLoading[MeasuredSettings]
     factor: int
     curve: Curve
     seat_closure: float
+    windows: np.ndarray
+    hardest: Curve
 
     @classmethod
     def of(
@@ -50,11 +57,17 @@ class Joint:
         total = budget["total"].sel(quantity="separation").values
         error = np.fmax(total, states["separation_error"].values)
         resolved = states["interface_closure"].where(states["resolved"]).values
-        curve = Curve.of(states["nominal_pressure"].values, resolved, error)
+        pressure = states["nominal_pressure"].values
+        curve = Curve.of(pressure, resolved, error)
+        separation = budget["error"].sel(quantity="separation")
+        windows = Curve.of(pressure, resolved, separation.sel(source="window").values).error
+        harder = budget["hardest"].sel(quantity="closure").values
+        hardest = Curve.of(pressure, np.where(np.isfinite(resolved), harder, np.nan), 0.0)
         seat = (states["interface_closure"] - states["seated_closure"]).values
         seat = seat[np.isfinite(seat)]
         at_seat = float(seat[0]) if seat.size else np.nan
-        return cls(loading.at_map_offset(), reported.resolution, curve, at_seat)
+        at_offset = loading.at_map_offset()
+        return cls(at_offset, reported.resolution, curve, at_seat, windows, hardest)
 
     @property
     def hardness(self) -> float:
@@ -69,15 +82,34 @@ class Joint:
     def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
         """Interface closure on the branch of a test, with modulus and H multiplied by a factor.
 
-        In a half-space all pressures scale with E*, where the hardness does too. What has crushed
-        under the largest pressure that the joint has carried before, MPa, stays so. Raises
-        `NotConverged` if a state on unloading could not be verified.
+        All pressures scale with E*, where the hardness does too. What has crushed under the largest
+        pressure that the joint has carried before, MPa, stays so. Raises `NotConverged` if a state
+        on unloading could not be verified.
         """
         curve = self.curve
         if test.branch != LOAD and np.isfinite(self.hardness):
             lightest = max(test.seat / modulus, curve.x[0])
             curve = self.solved(test, lightest, largest / modulus, self.hardness)
         return replace(curve, x=curve.x * modulus)
+
+    def apart(self, test: MeasuredTest, largest: float, datum: float, curve: Curve) -> np.ndarray:
+        """Half-widths (n,) of the closure from a datum by what a test need not share, mm.
+
+        At the points of a closure curve from that datum, on its own branch, by squares: up to three
+        times harder contacts; of elastic ones a modulus that is off by :data:`MODULUS_ERROR`, as
+        closures depend on pressure over modulus; and other windows of the joint.
+        """
+        windows = replace(self.curve, error=self.windows).since(datum)
+        beside = [windows.at(curve.x).high - windows.at(curve.x).value]
+        if np.isfinite(self.hardness):
+            hardest = self.hardest
+            if test.branch != LOAD:
+                hardest = self.with_hardness(test, largest, HARDEST * self.hardness)
+            beside.append(hardest.since(datum).at(curve.x).value - curve.y)
+        elif curve.x.size > 1:
+            slope = np.gradient(curve.y, np.log(curve.x))
+            beside.append(MODULUS_ERROR * (slope - slope[0]))
+        return np.sqrt(np.sum(np.nan_to_num(beside) ** 2, axis=0))
 
     def with_hardness(self, test: MeasuredTest, largest: float, hardness: float) -> Curve:
         """Interface closure on the branch of a test at another hardness, MPa; solved anew."""
@@ -91,27 +123,51 @@ class Joint:
                 f"{test.file}: the joint has carried {largest:.3g} MPa, more than it can at a "
                 f"hardness of {hardness:.3g} MPa; state a larger one in the material"
             )
-        composite, area = self._composite, self.loading.area
-        space = self.loading.half_space(composite.shape, self.factor)
+        area = self.loading.area
+        space = self.loading.half_space(self._composite.shape, self.factor)
         pressure = np.geomspace(lightest, largest, _STATES)
         up = pressure if test.branch == LOAD else pressure[-1:]
         down = pressure[:0] if test.branch == LOAD else pressure[-2::-1]
-        forces = (area * np.concatenate([up, down])).tolist()
+        path = self._path(test, np.concatenate([up, down]), hardness)
+        force = np.array([state.force for state in path])
+        closure = np.array([state.closure for state in path])
+        closure -= window_settlement(space, force)
+        # The error is that of the study's grid, which is the same at all loads.
+        error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
+        return Curve.of(force / area, closure, error)
+
+    def gaps_on_branch(
+        self, test: MeasuredTest, largest: float, pressures: np.ndarray
+    ) -> list[np.ndarray]:
+        """Gaps (ny, nx), mm, on the branch of a test under pressures, MPa, in their order.
+
+        ``largest`` is the pressure that the joint has carried before, from which it unloads.
+        """
+        if not len(pressures):
+            return []
+        order = np.argsort(pressures, kind="stable")
+        path = pressures[order]
+        if test.branch != LOAD:
+            order = order[::-1]
+            path = np.concatenate([[largest], pressures[order]])
+        states = self._path(test, path, self.hardness)[-len(pressures) :]
+        gaps = [np.where(state.contact.in_contact, 0.0, state.gap) for state in states]
+        return [gaps[place] for place in np.argsort(order)]
+
+    def _path(
+        self, test: MeasuredTest, pressures: np.ndarray, hardness: float
+    ) -> list[BranchState]:
+        """States under successive pressures, MPa."""
+        composite, forces = self._composite, (self.loading.area * pressures).tolist()
+        space = self.loading.half_space(composite.shape, self.factor)
         try:
-            path = load_path(
+            return load_path(
                 composite, space, forces=forces, hardness=hardness, rtol=self.loading.solver.rtol
             )
         except NotConverged as failure:
             name = self.loading.specimen.attrs["name"]
             failure.add_note(f"specimen {name}, test '{test.label}' at H = {hardness:g} MPa")
             raise
-        sides = np.multiply(space.shape, space.spacing)
-        force = np.array([state.force for state in path])
-        closure = np.array([state.closure for state in path])
-        closure -= bulk_settlement(force, space.modulus, *sides)
-        # The error is that of the study's grid, which is the same at all loads.
-        error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
-        return Curve.of(force / area, closure, error)
 
     @cached_property
     def _composite(self) -> np.ndarray:

@@ -17,6 +17,7 @@ from ..states.loading import JointLoading
 from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
 from .computed import Joint
 from .curve import Curve, compared
+from .flow_datum import OF_FLOW, compare_flow
 from .others import WHY_NONE, computed_curve
 from .readings import read_test
 
@@ -78,6 +79,8 @@ def measured_stage(
                 _beside(test, curve, computed_curve(test, flow, dilatancy, strength, reported))
                 for test, curve in zip(tests, readings, strict=True)
             ]
+        if kind == "flow":
+            rows = compare_flow(joint, tests, readings, rows, flow)
         rows = [row | {"note": reading.said} for row, reading in zip(rows, read, strict=True)]
         stage = stage.merge(_of_kind(kind, tests, rows))
     return {"measured": stage}
@@ -121,6 +124,7 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
         "note": ("1", "what to know of the readings"),
         **{name: (unit, said) for name, (_, unit, said) in _OF_TESTS.items()},
         **(OF_CLOSURE if kind == "closure" else {}),
+        **(OF_FLOW if kind == "flow" else {}),
     }
     results = [
         {axis: row["readings"].x, "read": replace(row["readings"], y=row["laid"]).values}

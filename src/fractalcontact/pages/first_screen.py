@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core.determined import decided_by_scan
-from ..core.labels import OPPOSITE, printable
+from ..core.labels import BOUNDARIES, OPPOSITE, printable
 from ..core.limits import ALL_CRUSH, JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, read, read_at, row_of
 from .files import CARD
-from .lights import lights_of, trust_of
+from .lights import trust_in
 from .summary import lengths_of
 
 #: Intervals as the register names them, in words.
@@ -60,7 +60,7 @@ def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
         "model": model_of(subject),
         "window": window_words(subject),
         "facts": facts_of(subject, synthetic),
-        "trust": trust_of(lights_of(subject)),
+        "trust": trust_in(subject),
     }
 
 
@@ -85,11 +85,17 @@ def model_of(subject: Subject) -> str:
 
 
 def window_words(subject: Subject) -> str:
-    """Sides and spacing of the window of a joint, and how they were chosen."""
+    """Sides, spacing and boundary of the window of a joint, and how they were chosen."""
     lengths, note = lengths_of(subject), subject["specimens"].attrs["window_note"]
     sides = f"{short(lengths['window_x'])} × {short(lengths['window_y'])} mm"
     chosen = f": {note}" if note else ""
-    return f"window {sides}, spacing {with_unit(lengths['spacing'], 'mm')}{chosen}"
+    spacing = with_unit(lengths["spacing"], "mm")
+    return f"window {sides}, spacing {spacing}, {boundary_of(subject)}{chosen}"
+
+
+def boundary_of(subject: Subject) -> str:
+    """What lies beyond the edges of the window, in words."""
+    return BOUNDARIES[subject.settings.get("boundary", "free")]
 
 
 def offset_words(subject: Subject, synthetic: bool = False) -> str:
@@ -237,7 +243,10 @@ class _Block:
         rules.sort(key=lambda rule: rule[0])
         if not rules:
             return Fact(title, "–", [missing["dilatancy"]])
-        lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
+        friction = self.number("basic_friction_angle")
+        source = str(friction.estimate.reason)
+        lines = [f"phi_b = {short(friction.value)}° {source}"] if source else []
+        lines += [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
         lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
         lines += [text for text in _EXPLAINED if len(rules) > 1]

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, FRICTION_FACTORS, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.text import compact, number, with_unit
 from ..core.validity import SLOPE, Validity
@@ -195,3 +195,21 @@ def trust_of(lights: Sequence[Light]) -> Trust:
         reason += f". Also {alike}: {', '.join(light.key for light in others)}"
     helps = [f"{light.help} ({light.key})" for light in deciding if light.help not in ("", STEEP)]
     return Trust(_TRUST[worst], reason, "; ".join(helps) or first.help)
+
+
+def trust_in(subject: Subject) -> Trust:
+    """Trust in a specimen; what helps begins with phi_b where its strength rests on an assumed one.
+
+    Tests differ from a strength with an assumed phi_b by more than any other error of it.
+    """
+    trust = trust_of(lights_of(subject))
+    material = subject.settings["material"]
+    is_stated = math.isfinite(material.get("basic_friction_angle") or math.nan)
+    is_assumed = material.get("basic_friction_angle_is") == "assumed"
+    if subject.direction == "none" or not (is_stated and is_assumed):
+        return trust
+    low, high = FRICTION_FACTORS["assumed"]
+    measure = (
+        f"measure phi_b on flat faces (assumed: tests had {low:g} to {high:g} times the strength)"
+    )
+    return trust._replace(help="; ".join(filter(None, (measure, trust.help))))

@@ -216,7 +216,10 @@ def read(row: Row, subject: Subject) -> list[Number]:
         stated = subject.settings["material"].get(row.variable)
         # Settings have an infinite hardness where nothing bounds the pressure.
         value = float(stated) if stated is not None and math.isfinite(stated) else math.nan
-        return [Number({}, Estimate(value), "" if math.isfinite(value) else row.missing)]
+        why = "" if math.isfinite(value) else row.missing
+        # How the study knows a constant, such as an assumed friction angle.
+        source = str(subject.settings["material"].get(f"{row.variable}_is", ""))
+        return [Number({}, Estimate(value, reason="" if why else source), why)]
     array = array_of(row, subject, row.source)
     if array is None:
         return [Number({}, Estimate(), row.absent or row.missing)]

@@ -10,7 +10,7 @@ from roughcontact.contact.state import ContactState
 from ..core.settings import JointSettings
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement
+from ..states.settlement import window_settlement
 from ..states.sweep import load_steps
 
 
@@ -55,8 +55,7 @@ class SubWindows(ABC):
         cells = np.array(windows.shape[1:])
         self.sides, self.pressures, self.factors = cells * loading.spacing, pressures, factors
         self.forces = pressures * self.sides.prod()
-        modulus = loading.settings.material.e_star
-        self.settlement = bulk_settlement(self.forces, modulus, *self.sides)
+        self.settlement = window_settlement(loading.half_space(cells), self.forces)
         self.flush = [np.ptp(window) == 0 for window in windows]
         self.solved = 0
         self._states: dict[tuple[int, int], Iterator[ContactState]] = {}

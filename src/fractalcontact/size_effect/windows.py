@@ -155,7 +155,7 @@ class _Solved(SubWindows):
         rows, columns = state.space.shape
         area = state.space.cell_area * rows * columns
         flush, settlement = self.flush[window], self.settlement[step]
-        errors, stiffness = state_errors(state), state.stiffness
+        errors, stiffness = state_errors(state, state.slope), state.stiffness
         numbers = {
             "closure": state.closure,
             "interface_closure": interface_closure(state.closure, settlement, flush),

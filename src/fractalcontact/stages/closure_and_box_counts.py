@@ -25,8 +25,11 @@ from ..joint.overlap import node_marks
 from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..laws.contact_strength import SAMPLED_BY
+from ..laws.reference_states import solve_reference_stiffness
 from ..laws.scan_errors import load_warning
 from ..registration.registration_scatter import stored_motions
+from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
 from ..scan.other_readings import other_readings
 from ..states.contact_fields import contact_fields
@@ -90,6 +93,8 @@ def state_stages(
     warnings = (load_warning(curves, reported), full_contact_warning(curves))
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
     curves.update(reported.variables())
+    joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    loading = joint.at_map_offset()
     dilatancy = elastic_dilatancy(curves, joints)
     if DIP in states:
         finest = {"resolution": states["resolution"].min()}
@@ -107,6 +112,8 @@ def state_stages(
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)
+    if DIP in dilatancy:
+        dilatancy.update(_of_sampling(domains, joints["composite"], loading))
     left = left_of_fields(fields)
     fitted = settings.scaling_range
     scaling = scaling_over_resolutions(curves, domains, spacing, left=left, fit_range=fitted)
@@ -128,6 +135,7 @@ def state_stages(
         variants = slid_variants(joint, reported.force)
         stages["dilatancy"] = stages["dilatancy"].assign(variants)
     loading = joint.at_map_offset()
+    solve_reference_stiffness(loading, stages["closure"], mapped)
     budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
@@ -189,3 +197,19 @@ def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Repor
         loads=forces_of(settings.dilatancy_loads, area),
         reference=float(forces_of([settings.map_load], area)[0]),
     )
+
+
+def _of_sampling(
+    domains: xr.Dataset, composites: xr.DataArray, loading: JointLoading
+) -> dict[str, xr.DataArray]:
+    """Variables of :data:`laws.contact_strength.SAMPLED_BY`; the amplitude is at one offset."""
+    clusters = domains["clusters"].sel(resolution=domains["resolution"].min(), drop=True)
+    clusters = clusters.rename(direction="contact_direction")
+    (offset,) = loading.offsets
+    composite = composites.sel(offset=offset, method="nearest").values
+    try:
+        amplitude = amplitude_error(composite, tuple(loading.spacing))
+    except ValueError:  # flush faces have no waves
+        amplitude = 0.0
+    values = {"contact_clusters": clusters, "amplitude_error": xr.DataArray(amplitude)}
+    return {name: values[name].assign_attrs(cf_attrs(*SAMPLED_BY[name])) for name in SAMPLED_BY}

@@ -14,9 +14,11 @@ from ..core.reported import Reported
 from ..core.settings import JointSettings, Solver
 from ..core.window import nominal_area
 from ..flow.aperture import (
+    PERMEABILITY,
     QUANTILES,
     barton_aperture,
     crushed_reason,
+    permeability_law,
     reynolds_gradient,
     rms_slope,
     zimmerman_bodvarsson_aperture,
@@ -88,6 +90,11 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         for name, (unit, of) in rows.items()
         for row, words in rows_of(f"{name}_{way}", unit, f"{of}, {way} the sliding").items()
         if row == f"{name}_{way}" or name in _WITH_INTERVAL
+    },
+    **{
+        row: ("branch", *words)
+        for name, of_law in PERMEABILITY.items()
+        for row, words in rows_of(name, *of_law).items()
     },
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
     "crushed_fraction": (_LOADS, "1", "volume of crushed rock over that of the gap left"),
@@ -168,6 +175,12 @@ def flow_stages(
         "unloaded": both(composite.max() - composite),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
+    laws = [
+        permeability_law(states["nominal_pressure"].values, flows)
+        for flows in values[f"branch_transmissivity_{WAYS[0]}"]
+    ]
+    for name in PERMEABILITY:
+        values |= Estimate.stack([law[name] for law in laws]).columns(name)
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],

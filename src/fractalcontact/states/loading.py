@@ -156,4 +156,5 @@ class JointLoading(Generic[P]):
             tuple(self.spacing * factor),
             self.settings.material.e_star,
             kernel=self.solver.kernel,
+            boundary=self.settings.boundary,
         )

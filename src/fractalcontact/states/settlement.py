@@ -9,15 +9,21 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from roughcontact.elastic.halfspace import rectangle_mean_displacement
+from roughcontact.elastic.halfspace import HalfSpace, rectangle_mean_displacement
+
+from ..core.settings import FREE
 
 _Numbers = float | np.ndarray | xr.DataArray
 
 
-def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: float) -> np.ndarray:
+def bulk_settlement(
+    force: ArrayLike, e_star: float, side_y: float, side_x: float, boundary: str = FREE
+) -> np.ndarray:
     """w_b, mm: mean settlement under the force spread evenly over the nominal window.
 
-    For a square of side b, w_b = 0.946402 F/(E* b).
+    For a free square of side b, w_b = 0.946402 F/(E* b). A periodic or mirrored window goes on
+    beyond its edges: an even pressure leaves no bowl in it, the closure is the approach of the mean
+    planes, and w_b = 0.
 
     Parameters
     ----------
@@ -27,9 +33,19 @@ def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: floa
         E*, MPa.
     side_y, side_x : float
         Sides of the window, mm.
+    boundary : str
+        "free", "periodic" or "mirrored", as of :class:`roughcontact.HalfSpace`.
     """
+    if boundary != FREE:
+        return np.zeros_like(np.asarray(force), dtype=float)
     mean = rectangle_mean_displacement(side_y, side_x)
     return np.asarray(force) / (side_y * side_x) * mean / e_star
+
+
+def window_settlement(space: HalfSpace, force: ArrayLike) -> np.ndarray:
+    """Bulk settlement w_b, mm, of the window of a half-space under a force, N."""
+    side_y, side_x = np.multiply(space.shape, space.spacing)
+    return bulk_settlement(force, space.modulus, side_y, side_x, boundary=space.boundary)
 
 
 def interface_closure(closure: _Numbers, settlement: _Numbers, flush: Any = False) -> Any:

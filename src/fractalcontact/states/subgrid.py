@@ -14,8 +14,8 @@ from ..core.limits import RESOLVED_NODES
 from ..joint.joint import prefractal
 from ..joint.overlap import suspect_load_share
 from .loading import JointLoading, Variant
-from .settlement import bulk_settlement, interface_closure, interface_stiffness
-from .state_scalars import state_area
+from .settlement import interface_closure, interface_stiffness, window_settlement
+from .state_scalars import resolved_slope, state_area
 from .sweep import load_steps
 
 #: Quantities of a state with a numerical error: unit, long name. They have the names that the error
@@ -147,10 +147,9 @@ def state_quantities(
     the summit. The reference is a length of the joint and stays what it is.
     """
     space = state.space
-    sides = np.multiply(space.shape, space.spacing)
-    area = float(np.prod(sides))
-    settlement = float(bulk_settlement(state.force, space.modulus, *sides))
-    stiffness = state.stiffness
+    area = float(np.prod(np.multiply(space.shape, space.spacing)))
+    settlement = float(window_settlement(space, state.force))
+    stiffness = resolved_slope(state).value
     compliance = area / stiffness if stiffness else np.inf
     return {
         "closure": float(interface_closure(state.closure, settlement)),

@@ -19,7 +19,7 @@ from ..joint.contact_dips import PARTS, STEPS, dips_by_force
 from ..joint.joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
-from .settlement import bulk_settlement, interface_closure
+from .settlement import interface_closure, window_settlement
 from .state_scalars import aperture, numbers_of
 from .states import (
     DIP,
@@ -268,6 +268,7 @@ def _labelled_states(
             ),
             "normal_force": ("normal_force", forces, cf_attrs("N", "normal force F")),
         },
+        attrs={"boundary": loading.settings.boundary},
     )
 
 
@@ -288,8 +289,7 @@ def _exact_enough(
         return state
     few = accuracy["delta_sigma"] * np.count_nonzero(state.in_contact)
     space, rtol = state.space, solving["rtol"]
-    sides = np.multiply(space.shape, space.spacing)
-    settlement = bulk_settlement(state.force, space.modulus, *sides)
+    settlement = window_settlement(space, state.force)
     # Flush faces have no interface; their own closure is the scale of the error.
     flush = np.ptp(composite) == 0
     closing = state.closure if flush else abs(interface_closure(state.closure, settlement))

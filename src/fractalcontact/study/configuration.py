@@ -8,7 +8,7 @@ from pathlib import Path
 from ..core.directions import APERTURE, slides
 from ..core.errors import InputError
 from ..core.keys import MAX_NODES_PER_SIDE, nearest, validate
-from ..core.settings import Material, Settings, Solver
+from ..core.settings import FREE, MIRRORED, Material, Settings, Solver
 from ..core.tolerance import tolerance
 from .keys import (
     AccuracyKeys,
@@ -30,6 +30,8 @@ MIN_NODES_PER_SIDE = 2
 LARGEST_SHARE = 0.95
 #: Relative tolerance of a study of full accuracy.
 FULL_RTOL = 1e-6
+#: Kernel of the contact solver that knows every boundary.
+LOVE = "love"
 
 
 def resolve_settings(
@@ -73,6 +75,7 @@ def resolve_settings(
         "block_lengths": sorted(said.get("block_lengths", [])),
         "capped_variant": is_capped_variant(config, name),
         "material": material,
+        "boundary": said.get("boundary", layers.boundary()),
         "opposite": opposite,
         "directions": directions,
         "contact_directions": directions if flat else said.get("contact_directions", directions),
@@ -87,6 +90,12 @@ def resolve_settings(
     plain = {field.name: said.get(field.name) for field in fields(Settings)}
     settings = Settings(**plain | follows)
     _refuse_contradictions(settings, layers.where)
+    kernel = config.get("solver", {}).get("kernel", LOVE)
+    if settings.boundary != FREE and kernel != LOVE:
+        raise InputError(
+            f"{layers.where('boundary')}: the kernel {kernel!r} of `solver` is that of a free "
+            "window; write 'boundary: free', or 'kernel: love'"
+        )
     return settings
 
 
@@ -105,6 +114,7 @@ class _Layers:
                     "say 'kind: contact-map' in their sidecar)"
                 )
         self._study, self._own = config.get("specimens", {}).get(name, {}), own
+        self._solver = config.get("solver", {})
         self._name, self._source, self._scan = name, source, scan
         layers = (
             (unsaid_settings(), source, ""),
@@ -134,6 +144,14 @@ class _Layers:
             return f"{self._said_in()}: {key}"
         place = f"specimens.{self._name}" if key in self._study else "defaults"
         return f"{self._source}: {place}.{key}"
+
+    def boundary(self):
+        """Boundary where none is stated: no half-space stands beside the face of a real joint.
+
+        The paper's rigid-plate kernels are those of a free window alone.
+        """
+        kernel = self._solver.get("kernel", LOVE)
+        return MIRRORED if self._scan and kernel == LOVE else FREE
 
     def twins(self):
         """Number of twins of a scan; embedded specimens have realisations."""
@@ -288,6 +306,7 @@ def _material(config, material, where, scanned: bool) -> Material:
         poisson=poisson,
         e_star=modulus / (2 * (1 - poisson**2)),
         basic_friction_angle=material.basic_friction_angle,
+        basic_friction_angle_is=material.basic_friction_angle_is,
         joint_wall_strength=strength,
         hardness=hardness,
     )

@@ -53,6 +53,9 @@ class MaterialKeys(Section):
     modulus: Annotated[Pressure, key("a pressure with its unit, such as 20 GPa")]
     poisson: Annotated[float, key("Poisson's ratio, above -1 and up to 0.5", gt=-1, le=0.5)]
     basic_friction_angle: Angle = float("nan")
+    basic_friction_angle_is: Annotated[
+        Literal["measured", "assumed"], key("measured or assumed")
+    ] = "assumed"
     joint_wall_strength: Annotated[Pressure, key("a pressure with its unit, such as 80 MPa")] = (
         float("nan")
     )
@@ -81,7 +84,7 @@ class SettingsKeys(_FromSettings):
         ),
     ] = ""
     """a name from `materials`, or `{modulus, poisson, basic_friction_angle,
-    joint_wall_strength, hardness}` as above, the last three optional"""
+    basic_friction_angle_is, joint_wall_strength, hardness}` as above, the last four optional"""
     measured: Annotated[
         Tests, key("laboratory tests by kind, closure, flow, dilatancy, shear or strength")
     ] = Tests()
@@ -461,9 +464,11 @@ class StudyKeys(Section):
         ),
     ] = {}
     r"""name (up to 200 characters on one line, without `$`): `{modulus, poisson,
-    basic_friction_angle, joint_wall_strength, hardness}`. Both blocks have one material: E\* =
-    E / (2 (1 - nu²)). Shear strength needs the angle and the strength (`30 deg`, `80 MPa`:
-    Barton's JCS); without them it is missing. `hardness` (`80 MPa`) caps the pressure: an
+    basic_friction_angle, basic_friction_angle_is, joint_wall_strength, hardness}`. Both blocks
+    have one material: E\* = E / (2 (1 - nu²)). Shear strength needs the angle and the strength
+    (`30 deg`, `80 MPa`: Barton's JCS); without them it is missing. `basic_friction_angle_is` is
+    `measured`, on flat faces of this rock (strength within 13 %), or `assumed` (the default: 0.9
+    to 1.9 times). `hardness` (`80 MPa`) caps the pressure: an
     elastic-perfectly plastic surface, whose contacts crush; `none` is elastic contact. By
     default it is the joint wall strength for scans that state one, and none for embedded
     specimens, as the paper's model is elastic"""

@@ -117,6 +117,12 @@ class FlowTest(_Cyclic):
 
     way: Annotated[Literal["along", "across"], key("along or across")]
     """`along` or `across` the sliding"""
+    datum_pressure: Annotated[
+        Pressure,
+        key("the pressure of the reading that sets the distance of the faces, such as 5 MPa"),
+    ] = _NAN
+    """pressure of one reading that sets the distance of the faces, which scans leave uncertain; T
+    at other pressures is then predicted. In one flow test of all"""
 
 
 class DilatancyTest(_Sliding, _Held):

@@ -4,6 +4,7 @@ A measured curve means little without what its displacement contains, its seat, 
 a test that lacks one of them is refused with what to write.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,11 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
     if sum(bool(test.calibrate) for test in tests) > 1:
         raise InputError(
             f"{where}: two tests calibrate a constant; keep 'calibrate' in one, so that the others "
+            "are predicted"
+        )
+    if sum(math.isfinite(test.datum_pressure) for test in tests) > 1:
+        raise InputError(
+            f"{where}.flow: two tests state 'datum_pressure'; keep it in one, so that the others "
             "are predicted"
         )
     return tests

@@ -12,7 +12,7 @@ from typing import Any
 from ...core.limits import JRC_RANGE, JRC_SAMPLING
 from ...core.text import exact, number
 from ..entries import reference_of, row_at
-from .constants import in_words
+from .constants import contact_of, in_words
 
 ENDING = "ags"
 _EDITION = "4.1.1"
@@ -29,7 +29,7 @@ def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]
         and JRC_RANGE[0] <= row.get("value", -1) <= JRC_RANGE[1]
     ]
     gap, wall = row_at(entries["mean_gap"], reference_of(card)), entries["joint_wall_strength"]
-    remarks = [f"contact {card['model']}", f"trust {card['trust']['word']}"]
+    remarks = [f"contact {contact_of(card)}", f"trust {card['trust']['word']}"]
     if jrc:
         remarks.append(
             f"JRC of Tse and Cruden 1979, step {exact(jrc[0]['at']['step'])} mm, "

@@ -57,11 +57,17 @@ def over_pressure(entry: Mapping[str, Any]) -> str:
     )
 
 
+def contact_of(card: Mapping[str, Any]) -> str:
+    """Contact model of a card, and what lies beyond the edges of its window."""
+    edges = card.get("boundary")
+    return f"{card['model']}, window {edges}" if edges else str(card["model"])
+
+
 def head_of(card: Mapping[str, Any], code: str) -> list[str]:
     """First lines of an export: specimen, contact model, trust."""
     one_line = " ".join(str(card["trust"]["reason"]).split())
     return [
         f"Constants of the joint {card['name']} for {code}, from its card (study {card['study']}).",
-        f"Contact: {card['model']}. Trust: {card['trust']['word']} ({one_line}).",
+        f"Contact: {contact_of(card)}. Trust: {card['trust']['word']} ({one_line}).",
         f"{card['licence']}. Brackets hold 95 % intervals.",
     ]
