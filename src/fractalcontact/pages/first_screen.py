@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.estimate import Estimate
 from ..core.labels import OPPOSITE, printable
 from ..core.limits import JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
-from ..report.published import Number, read, read_at, row_of
+from ..report.published import Number, Row, read, read_at, row_of
 from .files import CARD
 from .lights import lights_of, trust_of
 from .summary import lengths_of
@@ -95,25 +96,20 @@ def offset_words(subject: Subject) -> str:
 
 
 def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
-    """First numbers of a joint, all under the reference load of its study."""
+    """First numbers of a joint, five at most, all under the reference load of its study."""
     pressure = float(subject["closure"]["nominal_pressure"][subject.reported.reference])
     at, block = f"at {short(pressure)} MPa", _Block(subject, synthetic)
-    # The corrected area is never below F/H: where the raw one is not, contacts all crush.
-    crushed = block.hardness * _value(block.number("area_share"))
     facts = [
         block.fact(f"normal stiffness {at}", "interface_stiffness", "MPa/mm", block.at_twice()),
         block.closure(f"closure {at}"),
         block.fact(f"mean gap {at}", "mean_gap", "mm", block.flow()),
-        block.fact(
-            f"contact {at}",
-            "contact_fraction",
-            "%",
-            _ALL_CRUSH if abs(crushed / pressure - 1) < _SAME else "",
-        ),
     ]
     if subject.direction != "none":
-        facts += [block.jrc(), block.strength(f"shear strength {at}")]
-    return facts
+        return [*facts, block.jrc(), block.strength(f"shear strength {at}")]
+    # The corrected area is never below F/H: where the raw one is not, contacts all crush.
+    crushed = block.hardness * _value(block.number("area_share")) / pressure
+    all_crush = _ALL_CRUSH if abs(crushed - 1) < _SAME else ""
+    return [*facts, block.fact(f"contact {at}", "contact_fraction", "%", all_crush)]
 
 
 class _Block:
@@ -129,12 +125,10 @@ class _Block:
         return read_at(row_of(name), self.subject)
 
     def fact(self, title: str, name: str, unit: str, beside: str = "") -> Fact:
-        """Number of a row; below it its interval, the whole joint's and that of harder contacts."""
-        return self.written(title, self.number(name), unit, beside, row_of(name).interval)
+        """Number of a row; below it one interval and the number for harder contacts."""
+        return self.written(title, row_of(name), self.number(name), unit, beside)
 
-    def written(
-        self, title: str, number: Number, unit: str, beside: str, interval: str = ""
-    ) -> Fact:
+    def written(self, title: str, row: Row, number: Number, unit: str, beside: str) -> Fact:
         """Number in words and what stands below it; a dash with the reason where it is missing."""
         if number.missing:
             return Fact(title, "–", list(filter(None, (number.missing, beside))))
@@ -144,8 +138,7 @@ class _Block:
         if not number.determined:
             reason = str(number.estimate.reason) or number.remark
             return Fact(title, "undetermined", list(filter(None, (f"{words}: {reason}", beside))))
-        ends = _ends(number, size, _ALONE.get(interval, ""))
-        notes = ends, self._of_joint(number, size), self._harder(number, size), beside
+        notes = self._interval(row, number, size), self._harder(number, size), beside
         return Fact(title, words, list(filter(None, notes)))
 
     def closure(self, title: str) -> Fact:
@@ -165,8 +158,7 @@ class _Block:
             words = f"hydraulic aperture undetermined ({short(aperture.value)} mm)"
         steep = f"cubic law not valid (gap slope {short(slope.value)})"
         limits = (
-            self._harder(aperture, 1.0),
-            str(aperture.estimate.reason) if aperture.determined else aperture.remark,
+            "" if aperture.determined else aperture.remark,
             "absolute aperture not compared with tests",
             steep if _value(slope) > _STEEP_GAP else "",
         )
@@ -185,7 +177,7 @@ class _Block:
             if law.items() <= number.at.items():
                 step = with_unit(number.at["step"], "mm")
                 by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
-                return self.written("JRC", number, "1", by)
+                return self.written("JRC", row_of("jrc"), number, "1", by)
         return Fact("JRC", "–", ["no profile is long enough"])
 
     def strength(self, title: str) -> Fact:
@@ -205,16 +197,19 @@ class _Block:
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
         return Fact(title, f"{' to '.join(ends)} MPa", lines)
 
-    def _of_joint(self, number: Number, size: float) -> str:
-        """Half-width for the whole joint; larger than the number, it says how little is known."""
+    def _interval(self, row: Row, number: Number, size: float) -> str:
+        """One interval: with other windows of the joint where their spread is below the number."""
+        ends = _ends(number, size, _ALONE.get(row.interval, ""))
         if not math.isfinite(number.population):
-            return ""
-        half = short(size * number.population, 2)
-        if number.population <= abs(number.value):
-            return f"± {half} for the whole joint"
-        solved = self.synthetic or self.subject.settings.get("twins")
-        remedy = "" if solved else "; 'twins: 20' estimates it from the spectrum"
-        return f"± {half} for the whole joint: more than the number itself{remedy}"
+            return ends
+        if number.population > abs(number.value):
+            solved = self.synthetic or self.subject.settings.get("twins")
+            remedy = "" if solved else "; 'twins: 20' narrows this"
+            words = f"other windows of the joint may differ by any amount{remedy}"
+            return "; ".join(filter(None, (ends, words)))
+        ends = Estimate.about(number.value, number.population, *row.bounds).ends[1:]
+        low, high = (float(size * end) for end in ends)
+        return f"[{measured(low)},{_NBSP}{measured(high)}] whole joint"
 
     def _harder(self, number: Number, size: float) -> str:
         """A number for the largest hardness of single contacts; empty where contact is elastic."""

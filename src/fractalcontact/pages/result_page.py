@@ -28,11 +28,12 @@ from ..core.text import duration, interval, number, undetermined
 from ..report.caveats import aperture_caveat
 from ..report.published import Number, Row, row_of, shown_in, stages_of
 from ..study.atlas_parts import Trees
+from ..study.campaign import JOINT as JOINT_FIGURES
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
-from .figure_cards import SECTIONS, cards_of, section_of
+from .figure_cards import SECTIONS, cards_of, png_size, section_of
 from .files import (
     APERTURE,
     CARD,
@@ -141,6 +142,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         "loads": loads,
         "first_load": first,
         "blocks": blocks,
+        "overviews": {name: size for name in names if (size := _overview_size(place, name))},
         "with_card": carded,
     }
     write_page(place.folder / INDEX, "index.html", head | values)
@@ -173,6 +175,8 @@ def _head(place, atlas):
         "shown": shown,
         "row_of": row_of,
         "in_paper": _in_paper,
+        # A study without the paper has its statements folded, on the index alone.
+        "without_paper": configuration_of(atlas)["study"].get("figures") == JOINT_FIGURES,
     }
 
 
@@ -239,6 +243,12 @@ def _index_values(
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
     }
+
+
+def _overview_size(place: Place, name: str) -> tuple[int, int] | None:
+    """Pixels of the picture of a joint on the first screen; None where it was not drawn."""
+    path = place.figures / name / "overview.png"
+    return png_size(path) if path.is_file() else None
 
 
 def _comparison(atlas):

@@ -1,0 +1,53 @@
+"""Pages of a study without the paper: `figures: joint`."""
+
+import json
+import re
+import shutil
+
+import netCDF4
+import pytest
+from page_study import write_pages
+
+
+@pytest.fixture(scope="module")
+def without_paper(results, tmp_path_factory):
+    """The study of the pages with `figures: joint`."""
+    folder = tmp_path_factory.mktemp("joint") / "results/tiny"
+    shutil.copytree(results, folder)
+    with netCDF4.Dataset(folder / "atlas.nc", "a") as file:
+        configuration = json.loads(file.configuration)
+        configuration["study"]["figures"] = "joint"
+        file.configuration = json.dumps(configuration)
+    write_pages(folder)
+    return folder
+
+
+def test_a_joint_s_page_links_to_the_statements_and_lists_none(results, without_paper):
+    whole, page = (
+        (folder / "pages/pair.html").read_text(encoding="utf-8")
+        for folder in (results, without_paper)
+    )
+    assert 'id="statement-' in whole
+    assert 'id="statement-' not in page
+    assert 'href="../index.html#statements"' in page
+    assert 'href="#statements"' not in page
+
+
+def test_the_index_folds_the_statements_and_keeps_their_table(results, without_paper):
+    whole, index = (
+        (folder / "index.html").read_text(encoding="utf-8") for folder in (results, without_paper)
+    )
+    assert '<h2 id="statements">' in whole
+    assert index.count('<details id="statements">') == 1
+    folded = index.partition('<details id="statements">')[2].partition('<h2 id="study">')[0]
+    assert folded.count("</details>") >= 1
+    opens = re.compile(r'data-opens="([^"]*)"')
+    assert opens.findall(folded) == opens.findall(whole)
+    assert "#statement-" not in index
+
+
+def test_a_scanned_joint_has_its_picture_on_the_first_screen(results):
+    index = (results / "index.html").read_text(encoding="utf-8")
+    block = index.partition('id="joint-pair"')[2].partition("</article>")[0]
+    (picture,) = re.findall(r'<img class="overview"[^>]*>', block)
+    assert 'src="figures/pair/overview.png" width="3" height="2"' in picture
