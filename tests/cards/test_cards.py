@@ -15,13 +15,14 @@ from page_study import HOSTILE
 from fractalcontact.cards import page
 from fractalcontact.cards.card import _by_source, geometry_of, is_synthetic
 from fractalcontact.cards.entries import entries, entry_of, number, row_at
-from fractalcontact.cards.methods import _laws
+from fractalcontact.cards.methods import _contact, _laws, scan_words
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.labels import printable
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import with_unit
 from fractalcontact.report.published import Number, Row
 from fractalcontact.study.atlas import read_atlas
 
@@ -317,3 +318,33 @@ def test_methods_name_the_laws_that_were_fitted():
 def test_a_card_is_written_whole(tmp_path, cards):
     write_card(cards["pair"], tmp_path)
     assert read_card(tmp_path / "cards/pair.json") == cards["pair"]
+
+
+def test_methods_say_what_was_read_of_the_scans(cards):
+    text = cards["pair"]["methods"]
+    assert re.search(r"The window is [\d.]+ % of the scan; outlying cells were kept", text)
+    rows = [row["at"] for row in cards["pair"]["entries"]["jrc"]["values"]]
+    step = next(at["step"] for at in rows if at["sampling"] == "1.27 mm")
+    assert f"at a step of {with_unit(step, 'mm')}" in text
+
+
+def test_methods_state_registration_and_the_reason_of_the_hardness():
+    specimen = xr.Dataset(
+        {"valid": (("y", "x"), np.ones((10, 20), bool))},
+        attrs={"spacing_y": 0.5, "spacing_x": 0.5, "window_ny": 5, "window_nx": 10}
+        | {"registration": '{"applied": false, "mode": "none"}'},
+    )
+    assert scan_words(specimen, "fill") == (
+        "The window is 25 % of the scan; outlying cells were filled; the faces were not registered."
+    )
+    moved = {"applied": True, "mode": "rigid", "shift_x_mm": 0.25, "shift_y_mm": -0.5}
+    specimen.attrs["registration"] = json.dumps(moved | {"rotation_degrees": 1.5})
+    words = scan_words(specimen, "keep")
+    assert (
+        "(rigid) by moving it by 0.25 mm in x and \u22120.5 mm in y and turning it by 1.5" in words
+    )
+    stated = {key: {"value": 60.0} for key in ("modulus", "poisson", "joint_wall_strength")}
+    for hardness, reason in ((60.0, "the joint wall strength"), (90.0, "stated for this joint")):
+        entries = stated | {"hardness": {"value": hardness}}
+        card = {"entries": entries, "model": "crushing at H = 60 MPa"}
+        assert f"bounded by the hardness, 60 MPa, {reason}." in _contact(card)

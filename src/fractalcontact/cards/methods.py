@@ -1,9 +1,14 @@
 """Methods paragraph of a card, with the numbers of its run."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
-from ..core.text import short, with_unit
+import xarray as xr
+
+from ..core.limits import JRC_SAMPLING
+from ..core.text import percent, short, with_unit
+from ..core.window import cell_side, nominal_area
 
 #: Sources that the paragraph may name.
 _SOURCES = (
@@ -20,10 +25,32 @@ _SOURCES = (
 )
 
 
-def methods_of(card: Mapping[str, Any]) -> str:
-    """Methods paragraph, ready to be quoted, of a card without its ``methods``."""
-    return " ".join(
-        (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
+#: Treatments of outlying cells in words.
+_TREATED = {"keep": "kept", "mask": "left out", "fill": "filled"}
+
+
+def methods_of(card: Mapping[str, Any], scan: str = "") -> str:
+    """Methods paragraph, ready to be quoted, of a card without its ``methods``.
+
+    ``scan`` is the sentence of :func:`scan_words`.
+    """
+    parts = _faces(card), scan, _contact(card), _laws(card), _strength(card)
+    return " ".join(filter(None, (*parts, _versions(card["versions"]))))
+
+
+def scan_words(specimen: xr.Dataset, outliers: str) -> str:
+    """Sentence on the part of the scan used, its outliers and the registration of two faces."""
+    share = nominal_area(specimen) / (cell_side(specimen) ** 2 * int(specimen["valid"].sum()))
+    words = f"The window is {percent(share)} of the scan; outlying cells were {_TREATED[outliers]}"
+    record = json.loads(specimen.attrs.get("registration") or "{}")
+    if not record:
+        return f"{words}."
+    if not record["applied"]:
+        return f"{words}; the faces were not registered."
+    return (
+        f"{words}; the upper face was registered to the lower one ({record['mode']}) by moving it "
+        f"by {short(record['shift_x_mm'])} mm in x and {short(record['shift_y_mm'])} mm in y and "
+        f"turning it by {short(record['rotation_degrees'])} degrees."
     )
 
 
@@ -46,11 +73,12 @@ def _faces(card):
 def _contact(card):
     stated = card["entries"]
     modulus, poisson = (stated[key].get("value") for key in ("modulus", "poisson"))
-    capped = (
-        "without a bound on the pressure"
-        if card["model"] == "elastic"
-        else f"with the pressure bounded by the hardness, {card['model'].partition('= ')[2]}"
-    )
+    capped = "without a bound on the pressure"
+    if card["model"] != "elastic":
+        wall, hardness = (stated[key].get("value") for key in ("joint_wall_strength", "hardness"))
+        reason = "the joint wall strength" if wall == hardness else "stated for this joint"
+        hardness_words = card["model"].partition("= ")[2]
+        capped = f"with the pressure bounded by the hardness, {hardness_words}, {reason}"
     return (
         f"Both blocks are elastic half-spaces (E = {with_unit(modulus, 'MPa')}, Poisson's ratio "
         f"{short(poisson)}), {capped}. The frictionless normal contact problem was solved at "
@@ -78,8 +106,15 @@ def _strength(card):
     return (
         "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed "
         "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 (Tse "
-        "and Cruden 1979)."
+        f"and Cruden 1979){_jrc_step(card)}."
     )
+
+
+def _jrc_step(card):
+    """Step of the JRC of Barton's law, in words; empty without one."""
+    rows = card["entries"]["jrc"].get("values", ())
+    steps = [row["at"]["step"] for row in rows if row["at"]["sampling"] == JRC_SAMPLING]
+    return f" at a step of {with_unit(steps[0], 'mm')}" if steps else ""
 
 
 def _versions(versions):
