@@ -577,7 +577,7 @@ def test_the_trust_names_the_cause_before_its_symptoms():
     ("half", "synthetic", "words"),
     [
         (0.25, False, "[0.184,\u00a00.684] whole joint"),
-        (3.2, False, f"{WHOLE}; 'twins: 20' narrows this"),
+        (3.2, False, f"{WHOLE}; 'twins: 20' in its sidecar narrows this"),
         (3.2, True, WHOLE),
     ],
 )

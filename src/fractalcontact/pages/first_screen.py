@@ -14,20 +14,17 @@ from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, Row, read, read_at, row_of
 from .files import CARD
 from .lights import lights_of, trust_of
-from .summary import lengths_of
+from .summary import STRENGTH_RULES, lengths_of
 
 #: Intervals as the register names them, in words.
-_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
+_ALONE = {
+    "solver": " solver error alone",
+    "all errors of this surface": " this surface",
+    "slopes over twice the spacing": " change with slopes over twice the spacing alone",
+}
 #: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
-#: Rules for the peak shear strength, by their rows, in words.
-STRENGTH_RULES = {
-    "peak_strength": "dilatancy",
-    "contact_strength": "contact",
-    "barton_strength": "Barton",
-    "barton_scaled_strength": "Barton and Bandis",
-}
 #: Rms slope of the gap above which the local cubic law is not valid.
 _STEEP_GAP = 1.0
 #: Relative difference of the raw contact area from that of contacts that all crush: 0.01 to 0.02
@@ -187,12 +184,18 @@ class _Block:
         """
         numbers = {words: self.number(name) for name, words in STRENGTH_RULES.items()}
         missing = {words: number.missing for words, number in numbers.items() if number.missing}
+        kinds = {
+            words: _ALONE.get(row_of(name).interval, "") for name, words in STRENGTH_RULES.items()
+        }
         rules = [(number.value, words) for words, number in numbers.items() if not number.missing]
         rules.sort(key=lambda rule: rule[0])
         if not rules:
             return Fact(title, "–", [missing["dilatancy"]])
         lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
-        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
+        lines += [
+            f"{of} {short(value)} {_ends(numbers[of], of=kinds[of])}".rstrip()
+            for value, of in rules
+        ]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
         return Fact(title, f"{' to '.join(ends)} MPa", lines)
@@ -204,7 +207,7 @@ class _Block:
             return ends
         if number.population > abs(number.value):
             solved = self.synthetic or self.subject.settings.get("twins")
-            remedy = "" if solved else "; 'twins: 20' narrows this"
+            remedy = "" if solved else "; 'twins: 20' in its sidecar narrows this"
             words = f"other windows of the joint may differ by any amount{remedy}"
             return "; ".join(filter(None, (ends, words)))
         ends = Estimate.about(number.value, number.population, *row.bounds).ends[1:]

@@ -78,9 +78,10 @@ def _profile(specimen: xr.Dataset, line: int, touching: np.ndarray) -> xr.Datase
     if given:
         other = specimen["other_faces"].sel(reading=given[0], face="upper")
         heights["upper_as_given"] = other.transpose("y", "x").values[line]
+    face = "upper" if "upper" in heights else "lower"
     loaded = np.full(specimen.sizes["x"], np.nan)
-    loaded[touching] = heights.get("upper", heights["lower"])[touching]
-    heights["in_contact"] = loaded
+    loaded[touching] = heights[face][touching]
+    heights[f"{face}_in_contact"] = loaded
     table = {key: ("x", "mm", f"height, {key.replace('_', ' ')}") for key in heights}
     # Distances from the corner of the scan, as on the map.
     x = specimen["x"] - float(specimen["x"][0]) + spacing_of(specimen)[1] / 2
@@ -101,14 +102,14 @@ def _draw_profile(axes, profile, columns):
     """Both faces along the line, the upper one also as given, and the nodes in contact."""
     x = profile["x"].values
     unit, size = length_unit(float(x[-1]))
+    dots = {"color": kit.COLOURS[3], "marker": "o", "ms": 2.5, "ls": "none"}
+    loaded = "load acts here", dots
     styles = {
         "lower": ("lower face", {"color": kit.COLOURS[0], "lw": 0.9}),
         "upper": ("upper face, registered", {"color": kit.COLOURS[4], "lw": 0.9}),
         "upper_as_given": ("upper face as scanned", {"color": kit.COLOURS[1], "ls": ":", "lw": 1}),
-        "in_contact": (
-            "load acts here",
-            {"color": kit.COLOURS[3], "marker": "o", "ms": 2.5, "ls": "none"},
-        ),
+        "lower_in_contact": loaded,
+        "upper_in_contact": loaded,
     }
     for key, (label, style) in styles.items():
         if key in profile and np.isfinite(profile[key]).any():
