@@ -51,3 +51,17 @@ def test_a_scanned_joint_has_its_picture_on_the_first_screen(results):
     block = index.partition('id="joint-pair"')[2].partition("</article>")[0]
     (picture,) = re.findall(r'<img class="overview"[^>]*>', block)
     assert 'src="figures/pair/overview.png" width="3" height="2"' in picture
+
+
+def test_the_index_lists_figures_of_the_paper_with_their_joints(results, without_paper):
+    index = (results / "index.html").read_text(encoding="utf-8")
+    table = index.partition('<h2 id="paper">')[2].partition("</table>")[0]
+    rows = re.findall(r"<tr><td class=\"number\">(.*?)</td><td>.*?</td><td>(.*?)</td></tr>", table)
+    numbers = [number for number, _ in rows]
+    assert {"Fig. 8", "Figs. 4 and 5", "Fig. 13"} <= set(numbers)
+    assert all(number.startswith("Fig") for number in numbers)
+    links = dict(rows)["Fig. 8"]
+    assert re.findall(r'href="([^"]*)"', links) == [
+        f"pages/{name}.html#figure-fig08_prefractals" for name in ("flat.1", "pair")
+    ]
+    assert 'id="paper"' not in (without_paper / "index.html").read_text(encoding="utf-8")

@@ -63,6 +63,8 @@ NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Most letters of a label in a table.
 _LONGEST = 120
+#: Number of a figure of the paper at the beginning of a title.
+_FIGURE = re.compile(r"Figs?\. \d")
 #: Last line of the log of a job.
 _WORKED = re.compile(r"^worked ([\d.]+) s", re.MULTILINE)
 #: Most joints with a block each on the first screen, and with a column each of verdicts.
@@ -242,6 +244,7 @@ def _index_values(
         ),
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
+        "of_paper": _of_paper(place, configuration_of(atlas)["study"], specimens),
     }
 
 
@@ -249,6 +252,25 @@ def _overview_size(place: Place, name: str) -> tuple[int, int] | None:
     """Pixels of the picture of a joint on the first screen; None where it was not drawn."""
     path = place.figures / name / "overview.png"
     return png_size(path) if path.is_file() else None
+
+
+def _of_paper(
+    place: Place, study: Mapping[str, Any], specimens: Iterable[Sheet]
+) -> list[tuple[str, str, list[tuple[str, str]]]]:
+    """Figures of the paper: number, title here, and the specimens with the name of their figure.
+
+    Specimens are in the order of the study, in which the paper's sandstone is the first.
+    """
+    names = [sheet.words["specimen"] for sheet in specimens]
+    order = [name for name in study.get("embedded", {}) if name in names]
+    order += [name for name in names if name not in order]
+    rows = []
+    for name, figure in all_figures().items():
+        numbers, _, title = figure.title.partition(": ")
+        drawn = [one for one in order if (place.figures / one / f"{name}.png").is_file()]
+        if _FIGURE.match(numbers) and drawn:
+            rows.append((numbers, title, [(one, name) for one in drawn]))
+    return rows
 
 
 def _comparison(atlas):
