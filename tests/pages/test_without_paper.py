@@ -6,7 +6,12 @@ import shutil
 
 import netCDF4
 import pytest
+from markupsafe import escape
 from page_study import write_pages
+
+from fractalcontact.core.subject import Subject
+from fractalcontact.report.scan_words import warnings_of_specimen
+from fractalcontact.study.atlas import read_atlas
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +70,16 @@ def test_the_index_lists_figures_of_the_paper_with_their_joints(results, without
         f"pages/{name}.html#figure-fig08_prefractals" for name in ("flat.1", "pair")
     ]
     assert 'id="paper"' not in (without_paper / "index.html").read_text(encoding="utf-8")
+
+
+def test_a_page_repeats_each_warning_of_the_check_of_scans(results):
+    page = (results / "pages/pair.html").read_text(encoding="utf-8")
+    atlas = read_atlas(results / "atlas.nc")
+    subject = Subject.of(atlas, "pair")
+    warnings = warnings_of_specimen(subject["specimens"], subject["quality"])
+    listed = page.partition('<div id="warnings">')[2].partition("</div>")[0]
+    others = [one for one in warnings if one != subject["quality"].attrs["warning"]]
+    assert others
+    assert listed.count("<li>") == len(others)
+    for warning in others:
+        assert str(escape(warning))[1:60] in listed

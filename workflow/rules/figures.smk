@@ -38,7 +38,9 @@ def configuration_of(wildcards):
     So a change of another specimen draws no figure of this one again.
     """
     name = known(wildcards)
-    stated = {key: config[key] for key in ("study", "accuracy", "solver", "figures") if key in config}
+    stated = {
+        key: config[key] for key in ("study", "accuracy", "solver", "figures") if key in config
+    }
     if name in config.get("embedded", {}):
         stated["embedded"] = {name: config["embedded"][name]}
     return {"study": stated, "settings": {name: RECORDS[name]}}

@@ -27,6 +27,7 @@ from ..core.tables import write_table
 from ..core.text import duration, interval, number, undetermined
 from ..report.caveats import aperture_caveat
 from ..report.published import Number, Row, row_of, shown_in, stages_of
+from ..report.scan_words import warnings_of_specimen
 from ..study.atlas_parts import Trees
 from ..study.campaign import JOINT as JOINT_FIGURES
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
@@ -63,6 +64,8 @@ NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Most letters of a label in a table.
 _LONGEST = 120
+#: Most letters of a warning of a scan.
+_LONGEST_WARNING = 400
 #: Number of a figure of the paper at the beginning of a title.
 _FIGURE = re.compile(r"Figs?\. \d")
 #: Last line of the log of a job.
@@ -335,6 +338,7 @@ def _specimen_values(
         "calibration": calibration_of(subject),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "history": history(subject["specimens"], faces),
+        "warnings": _warnings(subject),
         "quantities": _quantities(subject, sheet),
         "plan": choices.attrs,
         "choices": choices[["value", "reason", "error", "error_of"]].to_dataframe().itertuples(),
@@ -342,6 +346,13 @@ def _specimen_values(
         "apertures": (place.folder / aperture).is_file(),
         "drawn": {card.name for card in cards},
     }
+
+
+def _warnings(subject: Subject) -> list[str]:
+    """Warnings of the check of scans that no light repeats."""
+    of_light = str(subject["quality"].attrs.get("warning", ""))
+    warnings = warnings_of_specimen(subject["specimens"], subject["quality"])
+    return [printable(warning, _LONGEST_WARNING) for warning in warnings if warning != of_light]
 
 
 def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:
