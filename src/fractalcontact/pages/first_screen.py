@@ -210,8 +210,8 @@ class _Block:
             remedy = "" if solved else "; 'twins: 20' in its sidecar narrows this"
             words = f"other windows of the joint may differ by any amount{remedy}"
             return "; ".join(filter(None, (ends, words)))
-        ends = Estimate.about(number.value, number.population, *row.bounds).ends[1:]
-        low, high = (float(size * end) for end in ends)
+        whole = Estimate.about(number.value, number.population, *row.bounds)
+        low, high = (float(size * end) for end in whole.ends[1:])
         return f"[{measured(low)},{_NBSP}{measured(high)}] whole joint"
 
     def _harder(self, number: Number, size: float) -> str:
