@@ -159,8 +159,10 @@ def test_a_card_is_as_trusted_as_its_worst_light(cards):
         present = [light["word"] for light in card["lights"]]
         worst = next(word for word in words if word in present)
         assert card["trust"]["word"] == words[worst]
-        deciding = [light for light in card["lights"] if light["word"] == worst]
-        assert all(light["help"] in card["trust"]["help"] for light in deciding)
+        deciding = {light["key"]: light for light in card["lights"] if light["word"] == worst}
+        cause = next(key for key in ("faces", "scan", "model", "nodes", "grid") if key in deciding)
+        assert card["trust"]["help"] == deciding[cause]["help"]
+        assert card["trust"]["reason"].startswith(deciding[cause]["title"])
 
 
 class Cells(HTMLParser):

@@ -92,8 +92,11 @@ def of_summary(folder, subject):
             several = "{" in row.summary
             numbers = read(row, subject) if several else [read_at(row, subject, load)]
             for number in numbers if not several or numbers[0].at else ():
-                words = {key: re.sub(r"\W+", "_", str(at)) for key, at in number.at.items()}
-                start = row.summary.format(**(number.at | {"test": words.get("test")}))
+                words = {
+                    key: re.sub(r"\W+", "_", at) if isinstance(at, str) else at
+                    for key, at in number.at.items()
+                }
+                start = row.summary.format(**words)
                 unit = "" if row.unit == "1" else "_" + row.unit.replace("/", "_per_")
                 fields = {"value": f"{start}{unit}"}
                 if row.uncertain:

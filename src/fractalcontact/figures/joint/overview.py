@@ -13,7 +13,7 @@ from ...core.text import length_unit, percent, pressure_label
 from ...core.window import spacing_of, window_sides, window_slices
 from .. import kit
 
-TITLE = "The joint: window on the scan, gap and load, faces before and after registration"
+TITLE = "The joint: window on the scan, gap, place of the load, and faces along a line"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "contact")
 ORDER = 5
