@@ -40,8 +40,8 @@ def contact(folder):
 def test_every_card_has_its_aperture_in_three_forms_that_agree(folder, contact):
     reference = contact["map_gap"].sel(normal_force=contact.attrs["map_load"], method="nearest")
     table = pd.read_csv(folder / "apertures/pair.csv")
-    assert list(table) == ["x", "y", "aperture"]
-    of_table = table.pivot(index="y", columns="x", values="aperture")
+    assert list(table) == ["x_mm", "y_mm", "aperture_mm"]
+    of_table = table.pivot(index="y_mm", columns="x_mm", values="aperture_mm")
     np.testing.assert_allclose(of_table, reference, rtol=1e-6)
     with xr.open_dataset(folder / "apertures/pair.nc") as of_netcdf:
         assert of_netcdf["aperture"].attrs["units"] == of_netcdf["x"].attrs["units"] == "mm"
@@ -103,11 +103,18 @@ def test_apertures_at_ones_own_points(folder, contact, tmp_path, capsys):
     out = tmp_path / "apertures.csv"
     assert main([str(folder), "pair", "--out", str(out), *asked]) == 0
     said = capsys.readouterr().out
-    assert "aperture in mm, computed at 125 MPa\n" in said
+    assert "aperture in mm, computed at 125 MPa; x and y in mm, in the coordinates" in said
     assert "points.csv: 1 of 3 points lie outside the map, which covers x = " in said
-    found = pd.read_csv(out)["aperture"].values
+    found = pd.read_csv(out)["aperture_mm"].values
     at = grid.values[2]
     np.testing.assert_allclose(found, [at[3], (at[3] + at[4]) / 2, np.nan], rtol=1e-5, atol=1e-9)
+    # From the corner of the window the same points lie at other places, and columns may have units.
+    moved = points - [x[0] - 0.05, y[0] - 0.05]
+    moved.add_suffix("_mm").to_csv(tmp_path / "points.csv", index=False)
+    assert main([str(folder), "pair", "--out", str(out), *asked, "--frame", "window"]) == 0
+    assert "x and y in mm, from the corner of the window" in capsys.readouterr().out
+    again = pd.read_csv(out)["aperture_mm"].values
+    np.testing.assert_allclose(again, found, rtol=1e-4, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +149,8 @@ def test_every_form_has_the_nodes_of_oblong_cells_at_their_places(tmp_path):
     aperture = xr.DataArray(values, {"y": y, "x": x}, ("y", "x"), "aperture", {"source": "made"})
     for ending in ("csv", "nc", "vtk"):
         write_aperture(aperture, tmp_path / f"map.{ending}")
-    table = pd.read_csv(tmp_path / "map.csv").pivot(index="y", columns="x", values="aperture")
+    table = pd.read_csv(tmp_path / "map.csv")
+    table = table.pivot(index="y_mm", columns="x_mm", values="aperture_mm")
     with xr.open_dataset(tmp_path / "map.nc") as stored:
         netcdf = stored["aperture"].load()
     found = {

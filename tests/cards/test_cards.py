@@ -15,13 +15,14 @@ from page_study import HOSTILE
 from fractalcontact.cards import page
 from fractalcontact.cards.card import _by_source, geometry_of, is_synthetic
 from fractalcontact.cards.entries import entries, entry_of, number, row_at
-from fractalcontact.cards.methods import _laws
+from fractalcontact.cards.methods import _contact, _laws, scan_words
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.labels import BOUNDARIES, printable
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import with_unit
 from fractalcontact.laws.strength import OFF_LENGTHS
 from fractalcontact.report.published import Number, Row
 from fractalcontact.study.atlas import read_atlas
@@ -160,8 +161,10 @@ def test_a_card_is_as_trusted_as_its_worst_light(cards):
         present = [light["word"] for light in card["lights"]]
         worst = next(word for word in words if word in present)
         assert card["trust"]["word"] == words[worst]
-        deciding = [light for light in card["lights"] if light["word"] == worst]
-        assert all(light["help"] in card["trust"]["help"] for light in deciding)
+        deciding = {light["key"]: light for light in card["lights"] if light["word"] == worst}
+        cause = next(key for key in ("faces", "scan", "model", "nodes", "grid") if key in deciding)
+        assert card["trust"]["help"] == deciding[cause]["help"]
+        assert card["trust"]["reason"].startswith(deciding[cause]["title"])
 
 
 class Cells(HTMLParser):
@@ -335,3 +338,33 @@ def test_a_card_says_what_lies_beyond_its_window_and_how_phi_b_is_known(cards):
             if assumed and "value" in row:
                 assert row["low"] == pytest.approx(0.9 * row["value"], rel=1e-4)
                 assert row["value"] <= row["high"] <= 1.9 * row["value"] * (1 + 1e-4)
+
+
+def test_methods_say_what_was_read_of_the_scans(cards):
+    text = cards["pair"]["methods"]
+    assert re.search(r"The window is [\d.]+ % of the scan; outlying cells were kept", text)
+    rows = [row["at"] for row in cards["pair"]["entries"]["jrc"]["values"]]
+    step = next(at["step"] for at in rows if at["sampling"] == "1.27 mm")
+    assert f"at a step of {with_unit(step, 'mm')}" in text
+
+
+def test_methods_state_registration_and_the_reason_of_the_hardness():
+    specimen = xr.Dataset(
+        {"valid": (("y", "x"), np.ones((10, 20), bool))},
+        attrs={"spacing_y": 0.5, "spacing_x": 0.5, "window_ny": 5, "window_nx": 10}
+        | {"registration": '{"applied": false, "mode": "none"}'},
+    )
+    assert scan_words(specimen, "fill") == (
+        "The window is 25 % of the scan; outlying cells were filled; the faces were not registered."
+    )
+    moved = {"applied": True, "mode": "rigid", "shift_x_mm": 0.25, "shift_y_mm": -0.5}
+    specimen.attrs["registration"] = json.dumps(moved | {"rotation_degrees": 1.5})
+    words = scan_words(specimen, "keep")
+    assert (
+        "(rigid) by moving it by 0.25 mm in x and \u22120.5 mm in y and turning it by 1.5" in words
+    )
+    stated = {key: {"value": 60.0} for key in ("modulus", "poisson", "joint_wall_strength")}
+    for hardness, reason in ((60.0, "the joint wall strength"), (90.0, "stated for this joint")):
+        entries = stated | {"hardness": {"value": hardness}}
+        card = {"entries": entries, "model": "crushing at H = 60 MPa"}
+        assert f"bounded by the hardness, 60 MPa, {reason}." in _contact(card)

@@ -142,6 +142,91 @@ def test_geos_gets_the_opening_of_the_hyperbola_and_the_table_of_apertures(card)
     np.testing.assert_allclose(1e3 * mean[::-1], 1 - closure(PRESSURE), rtol=1e-4)
 
 
+def test_geos_says_which_law_to_take_and_how_far_the_other_is_off(card):
+    text = geos.text_of(card)
+    assert "take ONE of the two laws: pair_table" in text
+    opening = V_M - closure(5.0)  # mm; the table has half of the mean gap
+    ratio = float(text.partition("BartonBandis, is ")[2].split()[0])
+    assert ratio == pytest.approx(opening / (0.5 * (1 - closure(5.0))), rel=0.02)
+    alone = copy.deepcopy(card)
+    alone["entries"]["hydraulic_aperture"] = {"missing": "not solved", "unit": "mm"}
+    assert "take ONE" not in geos.text_of(alone)
+
+
+_NAMES = ("stiffness-normal", "stiffness-shear", "friction", "dilation")
+#: Command of each code of Itasca, and the names of the constants behind it.
+ITASCA = {
+    "3dec": ("block contact property", *_NAMES),
+    "flac3d": ("zone interface node property", *_NAMES),
+    "udec": ("prop jmat=1", "jkn", "jks", "jfric", "jdil"),
+}
+TAU, ANGLE, JRC = 6.0, 12.0, 10.0  # MPa, degrees, 1
+
+
+@pytest.fixture(scope="module")
+def sheared(card):
+    """The card with a known strength, dilatancy angle and JRC."""
+    made = copy.deepcopy(card)
+    known = (("peak_strength", TAU, "MPa"), ("peak_dilatancy_angle", ANGLE, "degree"))
+    for key, value, unit in known:
+        rows = [
+            {"at": {"pressure": at}, "value": value * at / 5, "low": None, "high": None}
+            for at in (1.0, 5.0, 10.0)
+        ]
+        made["entries"][key] = {"title": key, "unit": unit, "model": "elastic", "values": rows}
+    at = {"sampling": "1.27 mm", "direction": made["direction"], "step": 1.2}
+    made["entries"]["jrc"] = {"title": "JRC", "values": [{"at": at, "value": JRC}]}
+    made["geometry"] |= {f"window_{axis}": {"value": 50.0, "unit": "mm"} for axis in "xy"}
+    return made
+
+
+@pytest.mark.parametrize("code", ITASCA)
+def test_codes_of_itasca_get_a_coulomb_joint_of_the_reference_load(sheared, code):
+    command, normal, shear, friction, dilation = ITASCA[code]
+    lines = exported(sheared, code).splitlines()
+    commands = [line for line in lines if not line.startswith(";")]
+    (assigned,) = (line for line in commands if line.startswith(command))
+    words = assigned.removeprefix(command).split()
+    values = dict(zip(words[::2], map(float, words[1::2]), strict=True))
+    assert values[normal] == pytest.approx(1e9 * K_NI * (1 + 5 / (K_NI * V_M)) ** 2, rel=1e-3)
+    assert np.tan(np.radians(values[friction])) == pytest.approx(TAU / 5, rel=1e-3)
+    assert values[dilation] == pytest.approx(ANGLE, rel=1e-3)
+    # Barton and Bandis 1990: peak displacement L/500 (JRC/L)^0.33, L in m.
+    displacement = 0.05 / 500 * (JRC / 0.05) ** 0.33
+    assert values[shear] == pytest.approx(1e6 * TAU / displacement, rel=1e-3)
+    assert [line for line in lines if line.startswith(f"; {shear}: ") and "NOT COMPUTED" in line]
+    tables = [line for line in commands if line.startswith("table 'pair_")]
+    assert len(tables) == 2
+    points = tables[0].split(" add ")[1].split()
+    pairs = [tuple(map(float, one.strip("()").split(","))) for one in points]
+    expected = [(1e6 * at, 1e9 * K_NI * (1 + at / (K_NI * V_M)) ** 2) for at in (1.0, 5.0, 10.0)]
+    np.testing.assert_allclose(pairs, expected, rtol=1e-3)
+
+
+def test_a_joint_without_strength_or_roughness_has_no_shear_stiffness(sheared):
+    made = copy.deepcopy(sheared)
+    made["entries"]["jrc"]["values"][0]["value"] = 25.0
+    text = exported(made, "3dec")
+    assert "left out: stiffness-shear: not computed; the empirical rule needs a JRC" in text
+    made["entries"]["peak_strength"] = {"unit": "MPa", "missing": "nothing slides"}
+    text = exported(made, "udec")
+    assert "left out: jfric: peak strength at 5 MPa: nothing slides" in text
+    assert "prop jmat=1 jkn " in text
+
+
+def test_dfnworks_gets_the_hydraulic_aperture_in_metres(card):
+    space = {}
+    exec(exported(card, "dfnworks"), space)
+    assert space["aperture"] == pytest.approx(0.5e-3 * (1 - closure(5.0)))
+    assert list(space["apertures"]) == PRESSURE.tolist()
+    made = copy.deepcopy(card)
+    for row in made["entries"]["hydraulic_aperture"]["values"]:
+        row |= {"determined": False, "note": "suspicious cells"}
+    text = exported(made, "dfnworks")
+    assert "# left out: aperture: hydraulic aperture at 5 MPa is undetermined" in text
+    assert "apertures = {}" in text
+
+
 def test_opengeosys_gets_a_stiffness_and_the_aperture_under_the_same_pressure(card):
     root = xml.fromstring(opengeosys.text_of(card))
     values = {one.findtext("name"): float(one.findtext("value")) for one in root.iter("parameter")}

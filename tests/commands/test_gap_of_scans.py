@@ -51,8 +51,38 @@ def test_the_map_is_the_opening_at_its_places(pair, tmp_path, capsys):
     assert (tmp_path / "gap.png").read_bytes().startswith(b"\x89PNG")
     assert run(pair, tmp_path, "gap.csv") == 0
     table = pd.read_csv(tmp_path / "gap.csv")
-    by_place = table.sort_values(["y", "x"])["aperture"].to_numpy().reshape(30, 40)
+    by_place = table.sort_values(["y_mm", "x_mm"])["aperture_mm"].to_numpy().reshape(30, 40)
     np.testing.assert_allclose(by_place, gap.values, rtol=1e-6)
+
+
+@pytest.fixture
+def clouds(tmp_path, monkeypatch):
+    """Two clouds as text, the first alone with a heading, none with a unit."""
+    monkeypatch.chdir(tmp_path)
+    z = self_affine((24, 24), 0.8, 0.1, rms=0.1, seed=4)
+    y, x = 0.1 * np.mgrid[:24, :24]
+    for name, heights, head in (("a.txt", z, "x,y,z\n"), ("b.txt", z + 0.25, "")):
+        rows = np.column_stack([x.ravel(), y.ravel(), heights.ravel()])
+        text = "\n".join(f"{a:.4f},{b:.4f},{c:.6f}" for a, b, c in rows)
+        (tmp_path / name).write_text(head + text + "\n")
+    return ["a.txt", "b.txt"]
+
+
+def test_two_clouds_need_their_unit_alone(clouds, tmp_path, capsys):
+    assert main([*clouds, "--unit", "um"]) == 0
+    assert "gap.csv: the gap in mm" in capsys.readouterr().out
+    gap = pd.read_csv(tmp_path / "gap.csv")["aperture_mm"].dropna()
+    np.testing.assert_allclose(gap, 0.25e-3, rtol=1e-3)
+    assert (tmp_path / "gap.png").is_file()
+
+
+def test_clouds_without_a_unit_are_refused_in_one_line_that_says_what_to_write(clouds, capsys):
+    assert main(clouds) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith("the files do not state unit; write --unit mm")
+    assert main([clouds[0], "none.txt", "--unit", "mm"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: none.txt: no such file")
 
 
 def test_faces_in_the_wrong_order_are_refused_and_nothing_is_written(pair, tmp_path, capsys):

@@ -7,6 +7,7 @@ import pytest
 import yaml
 
 from fractalcontact.commands.new_study import main
+from fractalcontact.study.campaign import MAX_WHOLE
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.sidecar import sidecar_of_matrix
 
@@ -52,7 +53,9 @@ def test_the_study_of_a_scan_that_describes_itself_resolves(home, capsys):
     config, study = resolved(home / "config/mine.yaml")
     assert (config["study"], config["scans"]) == ("mine", "scans")
     assert set(study.settings) == {"granite"}
-    assert config.keys() <= {"study", "scans", "materials", "defaults"}  # no experiment, no twin
+    # No experiment, no twin.
+    assert config.keys() <= {"study", "scans", "figures", "materials", "defaults"}
+    assert config["figures"] == "joint"
     assert "granite" in (home / "config/mine.yaml").read_text().split("materials:")[0]
     *_, written, first, second, third = capsys.readouterr().out.splitlines()
     assert written == "config/mine.yaml: written"
@@ -111,3 +114,10 @@ def test_hostile_names_of_files_and_folder_stay_words(home, capsys):
     assert "\a" not in told
     assert "invisible characters" in told
     assert "mend or remove the refused files" in told
+
+
+def test_many_scans_get_a_study_without_figures(home):
+    for number in range(MAX_WHOLE + 1):
+        self_describing(home / "scans", f"granite_{number}")
+    assert new() == 0
+    assert yaml.safe_load((home / "config/mine.yaml").read_text())["figures"] == "none"

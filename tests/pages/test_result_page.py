@@ -484,12 +484,12 @@ def test_the_first_screen_has_a_block_of_each_joint(results, atlas):
 def facts_with(atlas, monkeypatch):
     """First numbers of a joint, some of them replaced."""
 
-    def facts(synthetic=False, **numbers):
+    def facts(synthetic=False, specimen="pair", **numbers):
         def read(row, subject):
             return numbers.get(row.name) or read_at(row, subject)
 
         monkeypatch.setattr(first_screen, "read_at", read)
-        return first_screen.facts_of(Subject.of(atlas, "pair"), synthetic)
+        return first_screen.facts_of(Subject.of(atlas, specimen), synthetic)
 
     return facts
 
@@ -573,14 +573,17 @@ def test_the_first_screen_says_what_no_interval_holds(facts_with):
     """Hardness of single contacts, the spacing, the slope of the gap."""
     contact = of(0.0333, 0.033, 0.034, hardest=0.0111)
     crushing = {"hardness": of(150.0), "hardest_hardness": of(450.0)}
-    fact = facts_with(contact_fraction=contact, **crushing)[3]
-    assert fact.words == "3.33 %"
-    assert fact.notes == [
+    of_plane = facts_with(
+        specimen="flat.1", contact_fraction=contact, area_share=of(125.0 / 150.0), **crushing
+    )
+    assert len(of_plane) == 4
+    assert of_plane[3].words == "3.33 %"
+    assert of_plane[3].notes == [
         "[3.30,\u00a03.40] of these heights as gridded",
         "1.11 if contacts are 3 times as hard",
+        "all contacts crush: pressure over hardness, whatever the scan",
     ]
     facts = facts_with(
-        area_share=of(125.0 / 150.0),
         stiffness_change=of(-0.086),
         hydraulic_aperture=of(0.5),
         gap_slope=of(1.3),
@@ -588,10 +591,10 @@ def test_the_first_screen_says_what_no_interval_holds(facts_with):
     )
     assert "changes by −8.6 % at twice the spacing" in facts[0].notes
     assert facts[2].notes[-1].endswith("; cubic law not valid (gap slope 1.3)")
-    assert facts[3].notes[-1] == "all contacts crush: pressure over hardness, whatever the scan"
+    assert [fact.title for fact in facts[3:]] == ["JRC", "shear strength at 125 MPa"]
 
 
-WHOLE = "± 3.2 for the whole joint: more than the number itself"
+WHOLE = "; other windows of the joint may differ by any amount"
 
 
 def test_closure_counts_from_first_touch_where_none_counts_from_the_seat(facts_with):
@@ -604,13 +607,15 @@ def test_closure_counts_from_first_touch_where_none_counts_from_the_seat(facts_w
     assert fact.notes[-1].startswith("counted from 2 MPa")
 
 
-def test_the_model_s_reason_is_the_first_of_those_that_limit_the_trust():
+def test_the_trust_names_the_cause_before_its_symptoms():
     scan = Light("scan", "Scan", "poor", "noise", "a finer scan")
     model = Light("model", "Validity of the model", "poor", "steep faces", "lighter loads")
     trust = trust_of([scan, model])
-    assert trust.reason == "Validity of the model: steep faces. Also poor: scan"
-    assert trust.help == "lighter loads (model); a finer scan (scan)"
-    assert trust_of([scan]).reason == "Scan: noise"
+    assert trust.reason == "Scan: noise. Also poor: model"
+    assert trust.help == "a finer scan"
+    assert trust_of([model]) == ("low", "Validity of the model: steep faces", "lighter loads")
+    nodes = Light("nodes", "Contact nodes", "poor", "9 nodes", "heavier loads")
+    assert trust_of([nodes, model]).help == "lighter loads"
     # What no model helps against comes first: errors of two scans.
     for helps in (MARKS, FILLED):
         pair = Light("faces", "Fit of the faces", "poor", "they overlap", helps)
@@ -620,13 +625,15 @@ def test_the_model_s_reason_is_the_first_of_those_that_limit_the_trust():
 @pytest.mark.parametrize(
     ("half", "synthetic", "words"),
     [
-        (0.25, False, "± 0.25 for the whole joint"),
-        (3.2, False, f"{WHOLE}; 'twins: 20' estimates it from the spectrum"),
+        (0.25, False, "[0.184,\u00a00.684] whole joint"),
+        (3.2, False, f"{WHOLE}; 'twins: 20' in its sidecar narrows this"),
         (3.2, True, WHOLE),
     ],
 )
 def test_an_error_larger_than_its_number_leaves_it_unknown(facts_with, half, synthetic, words):
-    assert words in facts_with(synthetic, mean_gap=of(0.434, population=half))[2].notes
+    number = of(0.434, 0.431, 0.436, population=half)
+    note = facts_with(synthetic, mean_gap=number)[2].notes[0]
+    assert note.removeprefix("[0.431,\u00a00.436] this surface") == words
 
 
 def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(

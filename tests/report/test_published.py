@@ -301,8 +301,9 @@ def test_one_reader_gives_numbers_to_pages_and_cards():
 
 def test_a_unit_is_the_last_word_of_a_column():
     """But for the names of release 1.0, which stand beside the new ones once more."""
+    at = {"pressure": 5.0, "test": "a b", "sampling": "1.27 mm", "direction": "W"}
     for one in shown_in("summary"):
-        for column in columns_of(one, Number({"pressure": 5.0, "test": "a b"}, Estimate(1.0))):
+        for column in columns_of(one, Number(at, Estimate(1.0))):
             unit = one.unit.replace("/", "_per_")
             words = ("determined", "reason")
             assert one.unit == "1" or column.endswith((f"_{unit}", *words)), column

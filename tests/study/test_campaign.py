@@ -54,3 +54,15 @@ def test_figures_of_a_campaign_read_no_specimen_for_itself():
 def test_a_figure_that_is_none_is_refused_with_the_nearest():
     with pytest.raises(InputError, match=r"figures: no figure 'strenth'.*'strength'"):
         check_study({"study": "t", "figures": ["strenth"]}, "t")
+
+
+def test_the_figures_of_a_joint_are_few_and_restate_no_area_of_contacts_that_crush():
+    joint = drawn_of({"figures": "joint"}, FEW, "match")
+    restated = {"area_theories", *(f"fig{number}" for number in ("08", "09", "10", "12", "13"))}
+    assert 5 <= len(joint) <= 15
+    assert {"overview", "seated_closure", "strength"} <= set(joint) < set(figures_of("match"))
+    assert not {one for one in joint if one in restated or one[:5] in restated}
+    assert drawn_of({"figures": "joint"}, MANY, "flat") == [
+        name for name in joint if name in figures_of("flat")
+    ]
+    check_study({"study": "t", "figures": "joint"}, "t")

@@ -29,6 +29,7 @@ DECIDED = {"size_effect": {"refuted", "supported"}}
 #: Columns of a figure that no stage has, nor their values: what tells its rows apart, places along
 #: a profile, faces moved onto each other, and sums of two columns.
 OWN = {
+    "overview": {"lower_in_contact_mm", "upper_in_contact_mm", "upper_as_given_mm"},
     "fig02_relief": {"face"},
     "quality": {"node", "place_mm", "height_mm"},
     "fig03_composite": {"upper_before_mm", "upper_after_mm"},

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.workflow
 #: Jobs of every specimen.
 OF_SPECIMEN = (
     *("roughness_and_composite", "contact", "windows", "closure_and_box_counts", "flow"),
-    *("strength", "figures"),
+    *("strength", "specimen_atlas"),
     "card_and_page",
 )
 
@@ -43,6 +43,7 @@ def test_jobs_go_with_the_specimens_and_few_files_of_each_are_asked_for(project)
     asked = small_study(project, groups="folders", atlas="parts", figures=["fig02_relief"])
     drawn = run(project, asked, "--dry-run", "--summary")
     assert drawn.stdout.count("fig02_relief.png") == 3
+    assert jobs_of(run(project, asked, "--dry-run"))["figures"] == 3
     assert "fig01_strength.png" not in drawn.stdout
 
 
@@ -64,7 +65,7 @@ def test_one_more_specimen_runs_its_own_jobs_and_the_gather(project):
     assert any("fig02_relief.png" in name for name in before)
     write_groups(project, ["b/s2"])
     assert jobs_of(run(project, study)) == {  # what it ran, not what it planned
-        **dict.fromkeys(OF_SPECIMEN, 1),
+        **dict.fromkeys((*OF_SPECIMEN, "figures"), 1),
         **dict.fromkeys(OF_STUDY, 1),
     }
     assert times_of(project / "results/test", ("a_s1", "b_s1")) == before

@@ -51,8 +51,10 @@ def test_inputs_are_read_by_name_and_empty_ones_are_left_out(files, tmp_path):
 
 def test_figures_that_failed_are_listed_with_their_folder(files, tmp_path, caplog):
     figures = importlib.import_module("_figures")
-    drawn = SimpleNamespace(captions={"relief": "Heights."}, failures={"joint": "KeyError: 'x'"})
-    for result, folder, listed in ((drawn, "rock/", "rock/joint\n"), (None, "rock/", "")):
+    trace = {"joint": "KeyError: 'x'"}
+    drawn = SimpleNamespace(captions={"relief": "Heights."}, failures=trace, unchanged=[])
+    kept = SimpleNamespace(captions={}, failures={}, unchanged=["errors", "quality"])
+    for result, folder, listed in ((drawn, "rock/", "rock/joint\n"), (kept, "rock/", "")):
         figures.say_drawn(result, tmp_path / "undrawn.txt", folder, logging.getLogger())
         assert (tmp_path / "undrawn.txt").read_text() == listed
     assert "figure joint was not drawn\nKeyError: 'x'" in caplog.text

@@ -40,7 +40,9 @@ def configuration_of(wildcards):
     So a change of another specimen draws no figure of this one again.
     """
     name = known(wildcards)
-    stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
+    stated = {
+        key: config[key] for key in ("study", "accuracy", "solver", "figures") if key in config
+    }
     if name in config.get("embedded", {}):
         stated["embedded"] = {name: config["embedded"][name]}
     return {"study": stated, "settings": {name: RECORDS[name]}}
@@ -48,12 +50,14 @@ def configuration_of(wildcards):
 
 #: List of the figures that failed. It is empty unless the program has an error.
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
+#: Digest of what each figure was drawn from: a figure whose digest stays is not drawn again.
+DRAWN_FROM = f"{RESULTS}/drawn_from/{{specimen}}.txt"
 
 
-# Atlas of one specimen (and its row, in a campaign), and the figures drawn from it. The job does not need
-# atlas.nc, so a new scan draws only its own figures, and a bad scan stops no other specimen's figures. A
-# new contact map draws all figures again, because they show it beside every specimen.
-rule figures:
+# Atlas of one specimen, and its row in a campaign. The job does not need atlas.nc, so a new scan draws only
+# its own figures, and a bad scan stops no other specimen's figures. Contact maps are in it, because figures
+# show them beside every specimen.
+rule specimen_atlas:
     input:
         STAGE_PATTERNS,
         rules.strength.output,
@@ -61,42 +65,72 @@ rule figures:
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
         [] if CAMPAIGN else MAP_FILES,
     output:
-        *drawings(OF_JOINT),
         **({"row": SPECIMEN_ROW} if CAMPAIGN else {}),
         atlas=update(SPECIMEN_ATLAS),
-        undrawn=UNDRAWN,
     log:
-        f"{RESULTS}/logs/figures/{{specimen}}.log",
+        f"{RESULTS}/logs/specimen_atlas/{{specimen}}.log",
     wildcard_constraints:
         specimen=names_of(SLIDING, FLAT),
     priority: PRIORITY["figures"]
     resources:
-        mem_mb=memory("figures" if OF_JOINT else "atlas_part"),
-        runtime=minutes("figures" if OF_JOINT else "atlas_part"),
+        mem_mb=memory("specimen_atlas"),
+        runtime=minutes("specimen_atlas"),
     params:
-        names=OF_JOINT,
         configuration=configuration_of,
-        code=code("figures", "fractalcontact/figures"),
+        code=code("specimen_atlas"),
     message:
-        "{wildcards.specimen}: atlas and figures"
+        "{wildcards.specimen}: its atlas"
     script:
-        "../scripts/figures.py"
+        "../scripts/specimen_atlas.py"
 
 
-# The same for a specimen that does not slide: no strength, and fewer figures. Memory and time are those of
-# `figures`, which are enough.
-use rule figures as figures_against_plane with:
+# The same for a specimen that does not slide and has no strength.
+use rule specimen_atlas as specimen_atlas_against_plane with:
     input:
         STAGE_PATTERNS,
         rules.size_laws_against_plane.output,
         ENSEMBLE,
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
         [] if CAMPAIGN else MAP_FILES,
+    log:
+        f"{RESULTS}/logs/specimen_atlas_against_plane/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(FLAT, SLIDING),
+    priority: PRIORITY["figures_against_plane"]
+
+
+# Figures of one specimen. `update` leaves the old ones in place, and the job draws those alone whose numbers,
+# settings or code changed.
+rule figures:
+    input:
+        SPECIMEN_ATLAS,
+    output:
+        *drawings(OF_JOINT),
+        undrawn=UNDRAWN,
+        drawn_from=update(DRAWN_FROM),
+    log:
+        f"{RESULTS}/logs/figures/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(SLIDING, FLAT),
+    priority: PRIORITY["figures"]
+    resources:
+        mem_mb=memory("figures"),
+        runtime=minutes("figures"),
+    params:
+        names=OF_JOINT,
+        code=code("figures", "fractalcontact/figures"),
+    message:
+        "{wildcards.specimen}: figures"
+    script:
+        "../scripts/figures.py"
+
+
+# The same for a specimen that does not slide, with fewer figures. Memory and time are those of `figures`.
+use rule figures as figures_against_plane with:
     output:
         *drawings(OF_FLAT),
-        **({"row": SPECIMEN_ROW} if CAMPAIGN else {}),
-        atlas=update(SPECIMEN_ATLAS),
         undrawn=UNDRAWN,
+        drawn_from=update(DRAWN_FROM),
     log:
         f"{RESULTS}/logs/figures_against_plane/{{specimen}}.log",
     wildcard_constraints:
@@ -104,7 +138,6 @@ use rule figures as figures_against_plane with:
     priority: PRIORITY["figures_against_plane"]
     params:
         names=OF_FLAT,
-        configuration=configuration_of,
         code=code("figures", "fractalcontact/figures"),
 
 
@@ -130,11 +163,15 @@ rule study_figures:
         "../scripts/study_figures.py"
 
 
+#: Specimens of which the study draws any figure.
+DRAWN = [name for name in SPECIMENS if (OF_JOINT if name in SLIDING else OF_FLAT)]
+
+
 # A figure that fails stops no other figure. This job then fails, and names those that failed.
 rule all_drawn:
     input:
         undrawn=[
-            *expand(UNDRAWN, specimen=SPECIMENS),
+            *expand(UNDRAWN, specimen=DRAWN),
             *([rules.study_figures.output.undrawn] if STUDY_FIGURES else []),
         ],
         # The job waits for the atlas, because Snakemake begins no further job once one has failed.

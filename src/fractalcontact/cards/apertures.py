@@ -16,6 +16,12 @@ from ..core.text import exact
 #: Relative difference of two pressures that are one.
 SAME = 1e-6
 
+#: Frames of the coordinates of a map, in words.
+FRAMES = {
+    "scan": "in the coordinates of the scan",
+    "window": "from the corner of the window with the smallest x and y",
+}
+
 #: Endings of files of an aperture map.
 MAP_ENDINGS = (".csv", ".nc", ".vtk")
 
@@ -88,10 +94,24 @@ def _gaps(contact, results, name):
     return contact["map_gap"]
 
 
+def in_frame(aperture: xr.DataArray, frame: str) -> xr.DataArray:
+    """Aperture map with x and y in one of :data:`FRAMES`, which the attribute ``frame`` names."""
+    if frame == "window":
+        half = {axis: (aperture[axis][1] - aperture[axis][0]) / 2 for axis in "xy"}
+        moved = {
+            axis: (axis, (aperture[axis] - aperture[axis][0] + half[axis]).values) for axis in "xy"
+        }
+        attrs = {axis: aperture[axis].attrs for axis in "xy"}
+        aperture = aperture.assign_coords(moved)
+        for axis in "xy":
+            aperture[axis].attrs = attrs[axis]
+    return aperture.assign_attrs(frame=FRAMES[frame])
+
+
 def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame:
     """Aperture at the points of a CSV file with columns x and y in mm, bilinear between nodes.
 
-    It is missing outside the window.
+    Columns may be x_mm and y_mm too. The aperture is missing outside the window.
 
     Raises
     ------
@@ -99,8 +119,9 @@ def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame
         If the file cannot be read or has no such columns of numbers.
     """
     try:
-        points = pd.read_csv(path, usecols=["x", "y"], dtype=float, skipinitialspace=True)
-    except (OSError, ValueError) as error:
+        table = pd.read_csv(path, skipinitialspace=True)
+        points = table.rename(columns={"x_mm": "x", "y_mm": "y"})[["x", "y"]].astype(float)
+    except (OSError, ValueError, KeyError) as error:
         raise InputError(
             f"{path}: cannot be read as points ({error}); expected a CSV file whose first line "
             "is 'x,y', numbers in mm below it"
@@ -127,8 +148,8 @@ def outside_words(aperture: xr.DataArray, points: pd.DataFrame) -> str:
 def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> None:
     """Write an aperture map, or apertures at points, whole or not at all.
 
-    The ending of the path says the form: .csv (columns x, y, aperture; the only one for points),
-    .nc (netCDF by the CF conventions) or .vtk (legacy VTK, structured points).
+    The ending of the path says the form: .csv (columns x_mm, y_mm, aperture_mm; the only
+    one for points), .nc (netCDF by the CF conventions) or .vtk (legacy VTK, structured points).
 
     Raises
     ------
@@ -148,7 +169,7 @@ def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> N
             file.write_bytes(_vtk(aperture))
     else:
         table = aperture if of_points else aperture.to_dataframe().reset_index()
-        write_table(path, table[["x", "y", "aperture"]])
+        write_table(path, table[["x", "y", "aperture"]].add_suffix("_mm"))
 
 
 def _vtk(aperture: xr.DataArray) -> bytes:

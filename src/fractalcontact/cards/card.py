@@ -12,7 +12,7 @@ from ..pages.lights import lights_of, trust_in
 from ..pages.summary import lengths_of
 from ..report.published import read_at, row_of, shown_in, stages_of
 from .entries import entries, entry_of, number, rounded
-from .methods import methods_of, references_of
+from .methods import methods_of, references_of, scan_words
 
 #: Version of the form of a card; a change of ``card.schema.json`` that breaks readers raises it.
 FORM = 1
@@ -54,7 +54,8 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),
     }
-    methods = methods_of(card)
+    scan = scan_words(subject["specimens"], subject.settings["outliers"])
+    methods = methods_of(card, "" if card["synthetic"] else scan)
     return card | {"methods": methods, "references": references_of(methods)}
 
 

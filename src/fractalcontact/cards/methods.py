@@ -1,10 +1,15 @@
 """Methods paragraph of a card, with the numbers of its run."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
+import xarray as xr
+
 from ..core.labels import BOUNDARIES
-from ..core.text import short, with_unit
+from ..core.limits import JRC_SAMPLING
+from ..core.text import percent, short, with_unit
+from ..core.window import cell_side, nominal_area
 
 #: Sources that the paragraph may name.
 _SOURCES = (
@@ -21,10 +26,32 @@ _SOURCES = (
 )
 
 
-def methods_of(card: Mapping[str, Any]) -> str:
-    """Methods paragraph, ready to be quoted, of a card without its ``methods``."""
-    return " ".join(
-        (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
+#: Treatments of outlying cells in words.
+_TREATED = {"keep": "kept", "mask": "left out", "fill": "filled"}
+
+
+def methods_of(card: Mapping[str, Any], scan: str = "") -> str:
+    """Methods paragraph, ready to be quoted, of a card without its ``methods``.
+
+    ``scan`` is the sentence of :func:`scan_words`.
+    """
+    parts = _faces(card), scan, _contact(card), _laws(card), _strength(card)
+    return " ".join(filter(None, (*parts, _versions(card["versions"]))))
+
+
+def scan_words(specimen: xr.Dataset, outliers: str) -> str:
+    """Sentence on the part of the scan used, its outliers and the registration of two faces."""
+    share = nominal_area(specimen) / (cell_side(specimen) ** 2 * int(specimen["valid"].sum()))
+    words = f"The window is {percent(share)} of the scan; outlying cells were {_TREATED[outliers]}"
+    record = json.loads(specimen.attrs.get("registration") or "{}")
+    if not record:
+        return f"{words}."
+    if not record["applied"]:
+        return f"{words}; the faces were not registered."
+    return (
+        f"{words}; the upper face was registered to the lower one ({record['mode']}) by moving it "
+        f"by {short(record['shift_x_mm'])} mm in x and {short(record['shift_y_mm'])} mm in y and "
+        f"turning it by {short(record['rotation_degrees'])} degrees."
     )
 
 
@@ -47,11 +74,12 @@ def _faces(card):
 def _contact(card):
     stated = card["entries"]
     modulus, poisson = (stated[key].get("value") for key in ("modulus", "poisson"))
-    capped = (
-        "without a bound on the pressure"
-        if card["model"] == "elastic"
-        else f"with the pressure bounded by the hardness, {card['model'].partition('= ')[2]}"
-    )
+    capped = "without a bound on the pressure"
+    if card["model"] != "elastic":
+        wall, hardness = (stated[key].get("value") for key in ("joint_wall_strength", "hardness"))
+        reason = "the joint wall strength" if wall == hardness else "stated for this joint"
+        hardness_words = card["model"].partition("= ")[2]
+        capped = f"with the pressure bounded by the hardness, {hardness_words}, {reason}"
     constants = f"(E = {with_unit(modulus, 'MPa')}, Poisson's ratio {short(poisson)})"
     boundary = card["boundary"]
     blocks = (
@@ -86,8 +114,15 @@ def _strength(card):
     return (
         "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed "
         "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 of "
-        "the whole face (Tse and Cruden 1979)."
+        f"the whole face (Tse and Cruden 1979){_jrc_step(card)}."
     )
+
+
+def _jrc_step(card):
+    """Step of the JRC of Barton's law, in words; empty without one."""
+    rows = card["entries"]["jrc"].get("values", ())
+    steps = [row["at"]["step"] for row in rows if row["at"]["sampling"] == JRC_SAMPLING]
+    return f" at a step of {with_unit(steps[0], 'mm')}" if steps else ""
 
 
 def _versions(versions):

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ..core.text import MISSING, measured, percent, short
-from ..pages.first_screen import STRENGTH_RULES
+from ..pages.summary import STRENGTH_RULES
 from ..report.caveats import aperture_caveat
 from ..report.published import row_of
 from .entries import row_at

@@ -23,6 +23,7 @@ from ..gridding.outline import outline_words
 from ..joint.joint import choose_offsets
 from ..measured.beforehand import check_tests
 from ..measured.readings import read_test
+from ..report.scan_words import gap_words, warnings_of_specimen
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
@@ -35,7 +36,6 @@ from ..study.documents import read_study
 from ..study.laboratory_tests import require_files
 from ..study.scan_groups import grouped_notes
 from ..study.sidecar import is_contact_map
-from .scan_words import gap_words, warnings_of_specimen
 
 #: Columns of the table: heading and width.
 COLUMNS = {

@@ -111,6 +111,27 @@ def describe(scan: ScanFiles, *, always: bool = False) -> Described:
     return described
 
 
+def drafted_keys(lower: Path, upper: Path, stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Scan keys of two faces by their drafts, below those stated; None of what neither file states.
+
+    Keys in which the upper file differs stand under ``upper``, as in a sidecar; what it does not
+    state is taken from the lower one.
+    """
+    drafts = {
+        face: _draft_of(path, of_face(stated, face))[1]
+        for face, path in (("lower", lower), ("upper", upper))
+    }
+    common = drafts["upper"] | {
+        key: value for key, value in drafts["lower"].items() if value is not None
+    }
+    differing = {
+        key: value
+        for key, value in drafts["upper"].items()
+        if value is not None and value != common[key]
+    }
+    return {**common, **stated} | ({"upper": differing} if differing else {})
+
+
 def _stated(scan: ScanFiles) -> dict[str, Any]:
     """Scan keys of a sidecar, or of a draft that its owner may have completed in part."""
     if scan.sidecar is not None:

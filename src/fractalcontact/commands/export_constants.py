@@ -2,7 +2,7 @@
 
 python -m fractalcontact.commands.export_constants CARD --to CODE [--out FILE]
 
-CODE is porepy, geos, opengeosys, ags4 or csv.
+CODE is porepy, geos, opengeosys, udec, 3dec, flac3d, dfnworks, ags4 or csv.
 """
 
 import argparse
@@ -16,8 +16,12 @@ from ..cards.write import read_card
 from ..core.atomic import atomic_write
 from ..core.errors import said_in_one_line
 
-#: Codes that constants are written for: modules of ``cards.exports``.
-CODES = ("porepy", "geos", "opengeosys", "ags4", "csv")
+#: Codes that constants are written for, and their modules in ``cards.exports``.
+CODES = {
+    **{code: code for code in ("porepy", "geos", "opengeosys", "udec")},
+    **{"3dec": "three_dec", "flac3d": "flac3d", "dfnworks": "dfnworks"},
+    **{"ags4": "ags4", "csv": "csv"},
+}
 
 
 @said_in_one_line
@@ -39,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def exported(card: dict[str, Any], code: str) -> str:
     """Text of the constants of a card for one of :data:`CODES`."""
-    return import_module(f"fractalcontact.cards.exports.{code}").text_of(card)
+    return import_module(f"fractalcontact.cards.exports.{CODES[code]}").text_of(card)
 
 
 if __name__ == "__main__":

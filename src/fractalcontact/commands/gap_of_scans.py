@@ -1,11 +1,12 @@
 """Write the gap between two scanned faces, without a study: numbers, a map and a picture.
 
-python -m fractalcontact.commands.gap_of_scans LOWER UPPER --out FILE
-    [--keys SIDECAR.yaml] [--outliers fill]
+python -m fractalcontact.commands.gap_of_scans LOWER UPPER
+    [--unit mm] [--keys SIDECAR.yaml] [--outliers fill] [--out gap.csv]
 
-LOWER and UPPER are scans of the two faces. SIDECAR.yaml says how they are read, as a sidecar in the
-folder of scans does; its keys `registration` and `grid` hold here too. FILE ends in .csv, .nc or
-.vtk; the picture goes beside it.
+LOWER and UPPER are scans of the two faces. Files that do not describe themselves are read as a
+draft of their sidecar suggests, in the unit given, or as SIDECAR.yaml says, like a sidecar in the
+folder of scans; its keys `registration` and `grid` hold here too. The map is gap.csv unless --out
+names a file that ends in .csv, .nc or .vtk; the picture goes beside it.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,6 +26,7 @@ from ..core.text import percent
 from ..scan.read import read_faces
 from ..study.checks import read_sidecar
 from ..surface.cleaning import clean_faces
+from .describe import drafted_keys
 from .describe_picture import colours, draw_histogram
 
 #: Percentiles of the gap that are printed.
@@ -36,7 +39,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="gap_of_scans", description=__doc__)
     parser.add_argument("lower")
     parser.add_argument("upper")
-    parser.add_argument("--out", required=True, help="file to write: .csv, .nc or .vtk")
+    parser.add_argument("--out", default="gap.csv", help="file to write: .csv, .nc or .vtk")
+    parser.add_argument("--unit", help="of files that state none, such as mm")
     parser.add_argument("--keys", help="YAML file of keys as a sidecar has them")
     parser.add_argument("--outliers", default="keep", help="keep, mask or fill; keep by default")
     given = parser.parse_args(arguments)
@@ -45,13 +49,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
         raise InputError(f"{out}: write a file that ends in {', '.join(MAP_ENDINGS)}")
     # Settings of a study in the same sidecar, such as a material, do not change the gap.
     keys, _ = read_sidecar(Path(given.keys) if given.keys else None)
-    gap = gap_of(Path(given.lower), Path(given.upper), keys, given.outliers)
+    lower, upper = Path(given.lower), Path(given.upper)
+    gap = gap_of(lower, upper, complete(lower, upper, keys, given.unit), given.outliers)
     picture = out.with_suffix(".png")
     write_aperture(gap, out)
     _draw(gap, picture)
     sys.stdout.write("\n".join([*words(gap), f"{out}: the gap in mm", f"{picture}: its picture"]))
     sys.stdout.write("\n")
     return 0
+
+
+def complete(lower: Path, upper: Path, keys: Mapping, unit: str | None) -> dict[str, Any]:
+    """Keys of two files, with the unit and, where files need more, what a draft suggests.
+
+    Raises
+    ------
+    InputError
+        If the draft leaves a key open.
+    """
+    stated = dict(keys) | ({"unit": unit} if unit else {})
+    drafted = drafted_keys(lower, upper, stated)
+    left = [key for key, value in drafted.items() if value is None]
+    if not left:
+        return drafted
+    how = "--unit mm" if left == ["unit"] else "a sidecar and --keys SIDECAR.yaml"
+    raise InputError(f"{lower}, {upper}: the files do not state {', '.join(left)}; write {how}")
 
 
 def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> xr.DataArray:

@@ -15,6 +15,7 @@ import yaml
 from ..core.atomic import atomic_write
 from ..core.errors import InputError, said_in_one_line
 from ..core.labels import listed, natural_key
+from ..study.campaign import JOINT, MAX_WHOLE, NONE
 from ..study.documents import study_name
 from ..study.scan_files import list_scans
 from .describe import Described, describe_or_refuse, row_lines
@@ -47,6 +48,8 @@ def new_study(path: Path, scans: Path) -> list[Described]:
         name=path.stem,
         scans=yaml.safe_dump({"scans": str(scans)}, width=math.inf).rstrip(),
         specimens=listed(files) or "none",
+        # Thousands of pictures would take longer than the numbers.
+        figures=JOINT if len(files) <= MAX_WHOLE else NONE,
     )
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

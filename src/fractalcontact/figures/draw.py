@@ -34,6 +34,8 @@ from .kit.drawing import (
 from .kit.layout import lay_out
 from .kit.remembered import layouts_remembered
 from .kit.titles import entitle
+from .kit.verdicts import statements_quoted
+from .sources import read_sources, source_of, write_sources
 
 #: Errors that fail every figure: a full disk, no memory, an atlas that cannot be read.
 _NOT_OF_THE_FIGURE = (InputError, OutputError, OSError, MemoryError)
@@ -44,10 +46,16 @@ ENDINGS = ("png", "svg", "csv", "txt")
 
 @dataclass(frozen=True)
 class Drawn:
-    """Captions by figure, and tracebacks of the figures that an error of the program prevented."""
+    """Captions by figure, and tracebacks of the figures that an error of the program prevented.
+
+    ``unchanged`` are the figures whose files were kept, ``quoted`` the statements
+    that each of the others quotes.
+    """
 
     captions: dict[str, str] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
+    unchanged: list[str] = field(default_factory=list)
+    quoted: dict[str, set[str]] = field(default_factory=dict)
 
 
 def drawer_of(name: str) -> Callable[..., Drawing]:
@@ -115,13 +123,32 @@ def _read_stages(atlas, needs, subject):
 
 
 def draw_figures(
-    atlas_path: Path | str, specimen: str, folder: Path | str, names: Sequence[str]
+    atlas_path: Path | str,
+    specimen: str,
+    folder: Path | str,
+    names: Sequence[str],
+    drawn_from: Path | str | None = None,
+    code: str = "",
 ) -> Drawn:
     """Draw figures of one specimen and write each as PNG, SVG, CSV and caption.
 
     A figure that fails does not keep the others from being drawn; the caller looks at the failures.
+    Files of a figure are kept if they were drawn from the same numbers, settings and ``code``, as
+    the file ``drawn_from`` of the drawing before states; it is written anew.
     """
-    return _draw(read_atlas(atlas_path), specimen, folder, names)
+    atlas, kept = read_atlas(atlas_path), read_sources(drawn_from)
+    for name in kept.keys() & set(names):
+        found = all((Path(folder) / f"{name}.{ending}").is_file() for ending in ENDINGS)
+        if not found or kept[name] != source_of(atlas, name, specimen, kept[name].statements, code):
+            del kept[name]
+    drawn = _draw(atlas, specimen, folder, [name for name in names if name not in kept])
+    drawn.unchanged.extend(name for name in names if name in kept)
+    if drawn_from is not None:
+        for name in drawn.captions.keys() - drawn.failures.keys():
+            quoted = drawn.quoted[name]
+            kept[name] = source_of(atlas, name, specimen, quoted, code)
+        write_sources([(name, kept[name]) for name in names if name in kept], drawn_from)
+    return drawn
 
 
 def draw_study_figures(
@@ -140,7 +167,9 @@ def _draw(atlas, subject, folder, names):
         for name in names:
             with layouts_remembered():
                 try:
-                    drawing = draw_figure(atlas, name, subject)
+                    with statements_quoted() as quoted:
+                        drawing = draw_figure(atlas, name, subject)
+                    drawn.quoted[name] = quoted
                     save(drawing, folder, name)
                 except _NOT_OF_THE_FIGURE:
                     raise

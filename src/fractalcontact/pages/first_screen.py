@@ -6,31 +6,30 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..core.determined import decided_by_scan
+from ..core.estimate import Estimate
 from ..core.labels import BOUNDARIES, OPPOSITE, printable
 from ..core.limits import ALL_CRUSH, JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
-from ..report.published import Number, read, read_at, row_of
+from ..report.published import Number, Row, read, read_at, row_of
 from .files import CARD
 from .lights import trust_in
-from .summary import lengths_of
+from .summary import STRENGTH_RULES, lengths_of
 
 #: Intervals as the register names them, in words.
-_ALONE = {"solver": " solver error alone"}
+_ALONE = {
+    "solver": " solver error alone",
+    "slopes over twice the spacing": " change with slopes over twice the spacing alone",
+}
 _OF_SURFACE = "all errors of this surface"
 #: Relative difference of pressures that are one.
 _ROUNDING = 1e-9
 #: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
-#: Rules for the peak shear strength, by their rows, in words.
-STRENGTH_RULES = {
-    "peak_strength": "dilatancy",
-    "contact_strength": "contact",
-    "barton_strength": "Barton",
-    "barton_scaled_strength": "Barton and Bandis",
-}
 #: What the rules are, a line each for those computed here and those measured by others.
 _EXPLAINED = (
     "dilatancy and contact are computed for this window, where nothing breaks: friction angle plus "
@@ -112,25 +111,20 @@ def offset_words(subject: Subject, synthetic: bool = False) -> str:
 
 
 def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
-    """First numbers of a joint, all under the reference load of its study."""
+    """First numbers of a joint, five at most, all under the reference load of its study."""
     pressure = float(subject["closure"]["nominal_pressure"][subject.reported.reference])
     at, block = f"at {short(pressure)} MPa", _Block(subject, synthetic)
-    # The corrected area is never below F/H: where the raw one is not, contacts all crush.
-    crushed = block.hardness * _value(block.number("area_share"))
     facts = [
         block.fact(f"normal stiffness {at}", "interface_stiffness", "MPa/mm", block.at_twice()),
         block.closure(f"closure {at}"),
         block.fact(f"mean gap {at}", "mean_gap", "mm", block.flow()),
-        block.fact(
-            f"contact {at}",
-            "contact_fraction",
-            "%",
-            _ALL_CRUSH if abs(crushed / pressure - 1) < ALL_CRUSH else "",
-        ),
     ]
     if subject.direction != "none":
-        facts += [block.jrc(), block.strength(f"shear strength {at}")]
-    return facts
+        return [*facts, block.jrc(), block.strength(f"shear strength {at}")]
+    # The corrected area is never below F/H: where the raw one is not, contacts all crush.
+    crushed = block.hardness * _value(block.number("area_share")) / pressure
+    all_crush = _ALL_CRUSH if abs(crushed - 1) < ALL_CRUSH else ""
+    return [*facts, block.fact(f"contact {at}", "contact_fraction", "%", all_crush)]
 
 
 class _Block:
@@ -146,18 +140,10 @@ class _Block:
         return read_at(row_of(name), self.subject)
 
     def fact(self, title: str, name: str, unit: str, beside: str = "") -> Fact:
-        """Number of a row; below it its interval, the whole joint's and that of harder contacts."""
-        return self.written(title, self.number(name), unit, beside, row_of(name).interval, name)
+        """Number of a row; below it one interval and the number for harder contacts."""
+        return self.written(title, row_of(name), self.number(name), unit, beside)
 
-    def written(
-        self,
-        title: str,
-        number: Number,
-        unit: str,
-        beside: str,
-        interval: str = "",
-        name: str = "",
-    ) -> Fact:
+    def written(self, title: str, row: Row, number: Number, unit: str, beside: str) -> Fact:
         """Number in words and what stands below it; a dash with the reason where it is missing."""
         if number.missing:
             return Fact(title, "–", list(filter(None, (number.missing, beside))))
@@ -167,12 +153,10 @@ class _Block:
         if not number.determined:
             reason = str(number.estimate.reason) or number.remark
             return Fact(title, "undetermined", list(filter(None, (f"{words}: {reason}", beside))))
-        ends = _ends(number, size, self._holds(interval))
         notes = (
-            ends,
-            self._of_joint(number, size),
+            self._interval(row, number, size),
             self._harder(number, size),
-            self._at_offsets(name, size, shown),
+            self._at_offsets(row, size, shown),
             beside,
         )
         return Fact(title, words, list(filter(None, notes)))
@@ -208,8 +192,7 @@ class _Block:
             words = f"hydraulic aperture undetermined ({short(aperture.value)} mm)"
         steep = f"cubic law not valid (gap slope {short(slope.value)})"
         limits = (
-            self._harder(aperture, 1.0),
-            str(aperture.estimate.reason) if aperture.determined else aperture.remark,
+            "" if aperture.determined else aperture.remark,
             "absolute aperture not compared with tests",
             steep if _value(slope) > _STEEP_GAP else "",
         )
@@ -229,7 +212,7 @@ class _Block:
                 step = with_unit(number.at["step"], "mm")
                 by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
                 by = f"whole face, brackets: 95 % of its profiles; {by}"
-                return self.written("JRC", number, "1", by)
+                return self.written("JRC", row_of("jrc"), number, "1", by)
         return Fact("JRC", "–", ["no profile is long enough"])
 
     def strength(self, title: str) -> Fact:
@@ -239,6 +222,9 @@ class _Block:
         """
         numbers = {words: self.number(name) for name, words in STRENGTH_RULES.items()}
         missing = {words: number.missing for words, number in numbers.items() if number.missing}
+        kinds = {
+            words: _ALONE.get(row_of(name).interval, "") for name, words in STRENGTH_RULES.items()
+        }
         rules = [(number.value, words) for words, number in numbers.items() if not number.missing]
         rules.sort(key=lambda rule: rule[0])
         if not rules:
@@ -247,7 +233,10 @@ class _Block:
         source = str(friction.estimate.reason)
         lines = [f"phi_b = {short(friction.value)}° {source}"] if source else []
         lines += [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
-        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
+        lines += [
+            f"{of} {short(value)} {_ends(numbers[of], of=kinds[of])}".rstrip()
+            for value, of in rules
+        ]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
         lines += [text for text in _EXPLAINED if len(rules) > 1]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
@@ -266,23 +255,27 @@ class _Block:
             else " of these heights as gridded"
         )
 
-    def _of_joint(self, number: Number, size: float) -> str:
-        """Half-width for the whole joint; larger than the number, it says how little is known."""
+    def _interval(self, row: Row, number: Number, size: float) -> str:
+        """One interval: with other windows of the joint where their spread is below the number."""
+        ends = _ends(number, size, self._holds(row.interval))
         if not math.isfinite(number.population):
-            return ""
-        half = short(size * number.population, 2)
-        if number.population <= abs(number.value):
-            return f"± {half} for the whole joint"
-        solved = self.synthetic or self.subject.settings.get("twins")
-        remedy = "" if solved else "; 'twins: 20' estimates it from the spectrum"
-        return f"± {half} for the whole joint: more than the number itself{remedy}"
+            return ends
+        if number.population > abs(number.value):
+            solved = self.synthetic or self.subject.settings.get("twins")
+            remedy = "" if solved else "; 'twins: 20' in its sidecar narrows this"
+            words = f"other windows of the joint may differ by any amount{remedy}"
+            return "; ".join(filter(None, (ends, words)))
+        whole = Estimate.about(number.value, number.population, *row.bounds)
+        _, own_low, own_high = number.estimate.ends
+        low = float(size * np.fmin(whole.ends[1], own_low))
+        high = float(size * np.fmax(whole.ends[2], own_high))
+        return f"[{measured(low)},{_NBSP}{measured(high)}] whole joint"
 
-    def _at_offsets(self, name: str, size: float, shown: str) -> str:
+    def _at_offsets(self, row: Row, size: float, shown: str) -> str:
         """Range of a number over the other offsets of one scanned face, whose own is assumed."""
         specimen, reported = self.subject["specimens"], self.subject.reported
-        if not name or self.synthetic or specimen.attrs["opposite"] != "match":
+        if row.stage != "closure" or self.synthetic or specimen.attrs["opposite"] != "match":
             return ""
-        row = row_of(name)
         curve = reported.curves(self.subject[row.stage])[row.variable]
         values = size * curve.sel(normal_force=reported.force, method="nearest")
         others = values.where((values["offset"] > 0) & (values["offset"] != reported.offset))

@@ -171,8 +171,7 @@ class Trust(NamedTuple):
     """Trust in a specimen.
 
     ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights,
-    errors of two scans before the model's and others, and which others there are; ``help`` is what
-    would help of all these.
+    causes before their symptoms, and which others there are; ``help`` would help against it.
     """
 
     word: str
@@ -186,15 +185,18 @@ def trust_of(lights: Sequence[Light]) -> Trust:
     if worst == GOOD:
         return Trust(_TRUST[GOOD], "every light that applies is good", "")
     of_worst = [light for light in lights if light.word == worst]
-    first, *others = deciding = sorted(
-        of_worst, key=lambda light: (light.help not in (MARKS, FILLED), light.key != "model")
-    )
+    first, *others = deciding = sorted(of_worst, key=_place)
     reason = f"{first.title}: {first.reason}"
     if others:
         alike = "partly good" if worst == IN_PART else worst
         reason += f". Also {alike}: {', '.join(light.key for light in others)}"
-    helps = [f"{light.help} ({light.key})" for light in deciding if light.help not in ("", STEEP)]
-    return Trust(_TRUST[worst], reason, "; ".join(helps) or first.help)
+    helps = [light.help for light in deciding if light.help not in ("", STEEP)]
+    return Trust(_TRUST[worst], reason, helps[0] if helps else first.help)
+
+
+def _place(light):
+    """Place of a light among causes: errors of the scans decide too few nodes and poor grids."""
+    return ("faces", "scan", "model", "nodes", "grid").index(light.key)
 
 
 def trust_in(subject: Subject) -> Trust:

@@ -27,12 +27,14 @@ from ..core.tables import write_table
 from ..core.text import duration, interval, number, undetermined
 from ..report.caveats import aperture_caveat
 from ..report.published import Number, Row, row_of, shown_in, stages_of
+from ..report.scan_words import warnings_of_specimen
 from ..study.atlas_parts import Trees
+from ..study.campaign import JOINT as JOINT_FIGURES
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
-from .figure_cards import SECTIONS, cards_of, section_of
+from .figure_cards import SECTIONS, cards_of, png_size, section_of
 from .files import (
     APERTURE,
     CARD,
@@ -62,6 +64,10 @@ NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Most letters of a label in a table.
 _LONGEST = 120
+#: Most letters of a warning of a scan.
+_LONGEST_WARNING = 400
+#: Number of a figure of the paper at the beginning of a title.
+_FIGURE = re.compile(r"Figs?\. \d")
 #: Last line of the log of a job.
 _WORKED = re.compile(r"^worked ([\d.]+) s", re.MULTILINE)
 #: Most joints with a block each on the first screen, and with a column each of verdicts.
@@ -141,6 +147,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         "loads": loads,
         "first_load": first,
         "blocks": blocks,
+        "overviews": {name: size for name in names if (size := _overview_size(place, name))},
         "with_card": carded,
     }
     write_page(place.folder / INDEX, "index.html", head | values)
@@ -173,6 +180,8 @@ def _head(place, atlas):
         "shown": shown,
         "row_of": row_of,
         "in_paper": _in_paper,
+        # A study without the paper has its statements folded, on the index alone.
+        "without_paper": configuration_of(atlas)["study"].get("figures") == JOINT_FIGURES,
     }
 
 
@@ -238,7 +247,33 @@ def _index_values(
         ),
         "curves": _records(curves),
         "pictures": _pictures(rows, place),
+        "of_paper": _of_paper(place, configuration_of(atlas)["study"], specimens),
     }
+
+
+def _overview_size(place: Place, name: str) -> tuple[int, int] | None:
+    """Pixels of the picture of a joint on the first screen; None where it was not drawn."""
+    path = place.figures / name / "overview.png"
+    return png_size(path) if path.is_file() else None
+
+
+def _of_paper(
+    place: Place, study: Mapping[str, Any], specimens: Iterable[Sheet]
+) -> list[tuple[str, str, list[tuple[str, str]]]]:
+    """Figures of the paper: number, title here, and the specimens with the name of their figure.
+
+    Specimens are in the order of the study, in which the paper's sandstone is the first.
+    """
+    names = [sheet.words["specimen"] for sheet in specimens]
+    order = [name for name in study.get("embedded", {}) if name in names]
+    order += [name for name in names if name not in order]
+    rows = []
+    for name, figure in all_figures().items():
+        numbers, _, title = figure.title.partition(": ")
+        drawn = [one for one in order if (place.figures / one / f"{name}.png").is_file()]
+        if _FIGURE.match(numbers) and drawn:
+            rows.append((numbers, title, [(one, name) for one in drawn]))
+    return rows
 
 
 def _comparison(atlas):
@@ -303,6 +338,7 @@ def _specimen_values(
         "calibration": calibration_of(subject),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "history": history(subject["specimens"], faces),
+        "warnings": _warnings(subject),
         "quantities": _quantities(subject, sheet),
         "plan": choices.attrs,
         "choices": choices[["value", "reason", "error", "error_of"]].to_dataframe().itertuples(),
@@ -310,6 +346,13 @@ def _specimen_values(
         "apertures": (place.folder / aperture).is_file(),
         "drawn": {card.name for card in cards},
     }
+
+
+def _warnings(subject: Subject) -> list[str]:
+    """Warnings of the check of scans that no light repeats."""
+    of_light = str(subject["quality"].attrs.get("warning", ""))
+    warnings = warnings_of_specimen(subject["specimens"], subject["quality"])
+    return [printable(warning, _LONGEST_WARNING) for warning in warnings if warning != of_light]
 
 
 def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:

@@ -1,5 +1,6 @@
 """Summary of a study, one row for each specimen and pressure, and what its pages say of each."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,14 @@ from ..report.columns import columns_of, old_columns_of
 from ..report.published import Number, read, shown_in, under_load
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
+
+#: Rules for the peak shear strength, by their rows, in words.
+STRENGTH_RULES = {
+    "peak_strength": "dilatancy",
+    "contact_strength": "contact",
+    "barton_strength": "Barton",
+    "barton_scaled_strength": "Barton and Bandis",
+}
 
 
 @dataclass(frozen=True)
@@ -134,9 +143,18 @@ def _of_load(sheet, load):
     ]
     for row, number in numbers:
         columns |= columns_of(row, number)
+    columns |= _strength_range(sheet, load)
     for row, number in numbers:
         columns |= old_columns_of(row, number)
     return columns
+
+
+def _strength_range(sheet, load):
+    """Least and largest shear strength over the rules that have one under a load, MPa."""
+    numbers = [sheet.of(name, load) for name in STRENGTH_RULES]
+    values = [number.value for number in numbers if not number.missing]
+    ends = {"lowest": min(values, default=math.nan), "highest": max(values, default=math.nan)}
+    return {column_of("strength", "MPa", of): value for of, value in ends.items()}
 
 
 def _quoted(sheet, row, load):

@@ -10,8 +10,8 @@ from .figure_list import all_figures, figures_of
 MAX_WHOLE = 30
 #: Forms of an atlas: one file, or one file a specimen.
 WHOLE, PARTS = "whole", "parts"
-#: Values of the key ``figures`` for all figures and for none.
-ALL, NONE = "all", "none"
+#: Words of a study for all figures, for those of the owner of a joint, and for none.
+ALL, JOINT, NONE = "all", "joint", "none"
 #: Key that asks for the figures over several specimens; every study of more than one has it.
 COMPARISON = "comparison"
 
@@ -31,6 +31,8 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
     names = figures_of(opposite)
     if stated == ALL:
         return names
+    if stated == JOINT:
+        return [name for name in names if all_figures()[name].joint_study]
     return [] if stated == NONE else [name for name in names if name in stated]
 
 

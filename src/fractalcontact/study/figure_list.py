@@ -16,6 +16,8 @@ begins with the constant's name and holds literals alone,
     Key of the configuration that asks for the figure; of figures of a study alone.
 ``SECTION``
     Section of the result page, where it does not follow from the stages; may be left out.
+``JOINT_STUDY``
+    True if `figures: joint` draws it, for the owner of a joint; may be left out.
 
 The constants are read without importing the module, which would bring matplotlib and xarray into
 every process that reads the workflow.
@@ -39,7 +41,9 @@ SPECIMEN, JOINT, STUDY = "specimen", "joint", "study"
 
 #: A constant and its value, which may continue in indented lines and end in a closing bracket.
 _CONSTANT = re.compile(
-    r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY|SECTION) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
+    r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY|SECTION|JOINT_STUDY) = "
+    r"(.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)",
+    re.MULTILINE,
 )
 
 
@@ -55,6 +59,7 @@ class Figure:
     order: float
     key: str = ""
     section: str = ""
+    joint_study: bool = False
 
 
 def read_figure(path: Path | str) -> Figure:

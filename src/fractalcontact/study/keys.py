@@ -444,12 +444,14 @@ class StudyKeys(Section):
     """`whole`: one file, `atlas.nc`. `parts`: one file for each specimen, `atlas/SPECIMEN.nc`,
     and `atlas.nc` for what they have together. `open_atlas` reads both"""
     figures: Annotated[
-        Literal["all", "none"] | _Names,
+        Literal["all", "joint", "none"] | _Names,
         key(
-            "all, none, or a list of names of figures", unsaid="`all`; `none` for an atlas in parts"
+            "all, joint, none, or a list of names of figures",
+            unsaid="`all`; `none` for an atlas in parts",
         ),
     ] = "all"
-    """figures of each specimen: `all`, `none`, or a list of their names"""
+    """figures of each specimen: `all`; `joint`, those that the owner of a joint needs, with the
+    statements of the paper on the index alone; `none`; or a list of their names"""
     explorer: Annotated[
         _Names, key("a list of names of specimens", unsaid="all; none for an atlas in parts")
     ] = []

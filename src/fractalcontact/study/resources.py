@@ -54,7 +54,7 @@ class Cost:
 #: Costs by rule. Memory is fitted to grids of 128 to 2048 nodes per side. Seconds are fitted to a
 #: surface against a plane with 256, 512 and 1024 nodes per side and to a joint of 520 states
 #: (``docs/scaling.md``). States of ``ensemble`` are realisations. Nodes are those of the window,
-#: for ``roughness_and_composite`` of a face. ``atlas_part`` is ``figures`` without any figure.
+#: for ``roughness_and_composite`` of a face. ``specimen_atlas`` joins the stages of one specimen.
 COSTS = {
     "synthetic_scan": Cost(80, 130, 0.5, 0.4),
     "roughness_and_composite": Cost(270, 100, 4, 3.5),
@@ -65,7 +65,7 @@ COSTS = {
     "ensemble": Cost(420, 620, 5, 0, 0, 25),
     "strength": Cost(190, 10, 2.5, 0),
     "figures": Cost(480, 300, 15, 4, 8),
-    "atlas_part": Cost(190, 180, 3, 1, 1),
+    "specimen_atlas": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
 #: Nodes of the finer grids on which the analysis solves states again, over those of the scan; most

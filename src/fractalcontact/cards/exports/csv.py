@@ -9,7 +9,17 @@ from ...core.tables import table_text
 
 ENDING = "csv"
 #: Labels beside the numbers of a curve.
-_BESIDE = ("pressure", "offset", "direction", "step")
+_BESIDE = (
+    "pressure",
+    "offset",
+    "direction",
+    "sampling",
+    "step",
+    "fit",
+    "fit_step",
+    "branch",
+    "test",
+)
 
 
 def table_of(card: Mapping[str, Any]) -> pd.DataFrame:

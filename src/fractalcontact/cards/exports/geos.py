@@ -3,14 +3,15 @@
 ``BartonBandis`` has h = a_0 / (1 + 9 sigma / sigma_ref), ``referenceAperture`` a_0 and
 ``referenceNormalStress`` sigma_ref. The opening v_m - d of the hyperbola is this law with
 a_0 = v_m and sigma_ref = 9 k_ni v_m. A table of hydraulic against mechanical aperture comes first
-where the card has both.
+where the card has both, and is the law to take: a comment says so, and how far the laws differ.
 """
 
 from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
-from ...core.text import exact
+from ...core.text import exact, short
+from ..entries import reference_of, row_at
 from ._xml import comment, headed, text_of_element
 from .constants import Constants
 
@@ -48,10 +49,27 @@ def apertures_of(card: Mapping[str, Any]) -> list[tuple[float, float]]:
     return sorted((1e-3 * mean[at], 1e-3 * hydraulic[at]) for at in mean if at in hydraulic)
 
 
+def choice_of(card: Mapping[str, Any], constants: Constants) -> str:
+    """Law to take of the two, with their ratio under the reference load; empty with one alone."""
+    name, pressure = card["name"], reference_of(card)
+    row = row_at(card["entries"]["hydraulic_aperture"], pressure)
+    if not constants.values or "value" not in row or not apertures_of(card):
+        return ""
+    closing = 1 + 9 * 1e6 * pressure / constants.values["referenceNormalStress"]
+    ratio = 1e3 * constants.values["referenceAperture"] / closing / row["value"]
+    return (
+        f"take ONE of the two laws: {name}_table, solved as flow through the gap; the aperture of "
+        f"{name}, BartonBandis, is {short(ratio)} times that at {short(pressure)} MPa and stands "
+        "here for models that have no mechanical aperture"
+    )
+
+
 def text_of(card: Mapping[str, Any]) -> str:
     """Parts of a problem file: the aperture law of a fracture and, where known, its table."""
     root = headed("Problem", card, "GEOS")
     laws, constants = xml.SubElement(root, "Constitutive"), constants_of(card)
+    if choice := choice_of(card, constants):
+        laws.append(comment(choice))
     if rows := apertures_of(card):
         name = f"{card['name']}_aperture_table"
         laws.append(

@@ -18,6 +18,7 @@ TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against
 SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
+JOINT_STUDY = True
 
 #: Stages of sliding that the paper describes, by statement.
 STAGES = {

@@ -16,6 +16,7 @@ TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
 NEEDS = ("error_budget", "closure")
 ORDER = 225
+JOINT_STUDY = True
 
 #: Title of the panel of each quantity, and its word in the caption.
 QUANTITIES = {

@@ -16,6 +16,7 @@ TITLE = "Contact, gap and flow"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "contact", "flow")
 ORDER = 48
+JOINT_STUDY = True
 SECTION = "flow"
 
 #: Ends of the colours of the flow per width, over its mean.

@@ -17,6 +17,7 @@ TITLE = "Hydraulic aperture and transmissivity"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
+JOINT_STUDY = True
 SECTION = "flow"
 
 #: Styles of the flow along and across; caps of bars differ because both have the same abscissae.

@@ -24,6 +24,7 @@ TITLE = "Quality of the scan: relief, missing cells, spectra, noise and fractal 
 SUBJECT = "specimen"
 NEEDS = ("specimens", "quality", "closure")
 ORDER = 30
+JOINT_STUDY = True
 
 #: Length of a line of the text, letters, and its height, inches.
 LETTERS, LINE = 126, 0.138

@@ -21,6 +21,8 @@ TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "branches", "error_budget", "measured")
 ORDER = 45
+JOINT_STUDY = True
+SECTION = "closure"
 
 _AGAIN: dict[str, Any] = {
     "labels": ["unloading and reloading"],

@@ -17,6 +17,7 @@ TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's crite
 SUBJECT = "joint"
 NEEDS = ("closure", "strength", "measured")
 ORDER = 110
+JOINT_STUDY = True
 
 _TITLES = ("dilatancy and friction angle", "shear strength", "peak and residual shear strength")
 _LIMIT = f"{compact(LARGEST_FRICTION_ANGLE, 6)}°"

@@ -16,6 +16,7 @@ TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size 
 SUBJECT = "specimen"
 NEEDS = ("closure", "windows", "statements")
 ORDER = 90
+JOINT_STUDY = True
 
 #: Variable, exponent, axis and head of the legend of the panels on contact in sub-windows.
 _CONTACT = {

@@ -1,6 +1,7 @@
 """Verdicts on the paper's statements, as captions quote them from :mod:`statements`."""
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 
 import xarray as xr
 from xarray import DataTree
@@ -12,6 +13,19 @@ from ...core.verdicts import ILL_POSED, UNDETERMINED
 
 #: Words added to a verdict where the specimen was chosen for it: in a sentence, in a table.
 CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen to show it", "circular"
+#: Sets that names of the statements read are added to.
+_QUOTED: list[set[str]] = []
+
+
+@contextlib.contextmanager
+def statements_quoted() -> Iterator[set[str]]:
+    """Set of the names of statements that :func:`row_of` reads within the block."""
+    quoted: set[str] = set()
+    _QUOTED.append(quoted)
+    try:
+        yield quoted
+    finally:
+        _QUOTED.pop()
 
 
 def verdict_words(
@@ -94,6 +108,8 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
     """
     if statement not in all_claims():
         raise KeyError(f"no statement is called {statement!r}")
+    for quoted in _QUOTED:
+        quoted.add(statement)
     table = atlas[f"{stage}/{name}"].to_dataset()
     asked = statement in table["statement"].values
     return table.sel(statement=statement) if asked else None

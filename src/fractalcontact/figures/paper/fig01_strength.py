@@ -14,6 +14,7 @@ TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset 
 SUBJECT = "joint"
 NEEDS = ("windows", "statements")
 ORDER = 10
+JOINT_STUDY = True
 
 #: Variables of the table, at every v/b.
 _COLUMNS = (

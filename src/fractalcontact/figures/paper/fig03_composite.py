@@ -14,6 +14,7 @@ TITLE = "Fig. 3: the joint slid to its largest offset, dilatancy and composite t
 SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
+JOINT_STUDY = True
 
 #: Reason why a correlation may be inconclusive.
 _TOO_SMALL = "in so small a window chance may give as much"

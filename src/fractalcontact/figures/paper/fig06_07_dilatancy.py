@@ -23,6 +23,7 @@ NEEDS = (
     "measured",
 )
 ORDER = 100
+JOINT_STUDY = True
 
 #: Height of the curves and their legend, inches.
 _TOP = 3.7

@@ -77,7 +77,8 @@ def _moved_words(specimen):
 
 def _outlier_words(specimen):
     """Sentence on the outliers kept: number, largest distance, likely cause."""
-    count, cells = specimen.attrs["outlier_count"], specimen["outlier"].values
+    # An atlas gives back numbers of numpy, and masks as whole numbers.
+    count, cells = int(specimen.attrs["outlier_count"]), specimen["outlier"].values.astype(bool)
     heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
     highest = max(np.nanmax(abs(z[cells])) for z in heights)
     rest = np.concatenate([z[~cells & np.isfinite(z)] for z in heights])
