@@ -29,6 +29,11 @@ def split(heights: ArrayLike, parts: int) -> np.ndarray:
     return middle.reshape(parts, ny, parts, nx).swapaxes(1, 2).reshape(parts**2, ny, nx)
 
 
+def occupied_windows(domain: np.ndarray, parts: int) -> np.ndarray:
+    """Sub-windows of :func:`split` in which the contact domain (ny, nx) of the whole has a node."""
+    return split(domain, parts).any(axis=(1, 2))
+
+
 def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:
     return [(n - parts * (n // parts)) // 2 for n in shape]
 

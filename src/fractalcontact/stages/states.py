@@ -23,6 +23,7 @@ from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
+from ..states.elimination import elimination_alone
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
 from ..states.plan import solve_plan
@@ -131,7 +132,7 @@ def state_stages(
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
         "branches": joint_branches(loading, stages["closure"], mapped),
-        "error_budget": with_pressure(budget, area),
+        "error_budget": with_pressure(budget, area).merge(elimination_alone(loading)),
         "choices": plan.assign(requested_accuracy(solver)),
     }
 
