@@ -1,7 +1,7 @@
 """Verdicts in worlds whose truth is known by construction: one where a claim is true, one not."""
 
 from dataclasses import asdict
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,8 +10,6 @@ from materials import ROCK
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import FAILS, HOLDS, PARTLY
-from fractalcontact.size_effect import windows
-from fractalcontact.size_effect.division import PARTS
 from fractalcontact.statements.judge import Joint, rule_of
 from fractalcontact.study.configuration import (
     resolve_embedded,
@@ -65,13 +63,10 @@ def pressed(heights):
     return joint_of(heights, ("closure",), **own)
 
 
-def cut(heights, parts=PARTS):
-    """A surface pressed against a plane, whole and in parts x parts windows."""
+def cut(heights):
+    """A surface pressed against a plane, whole and in windows."""
     own = {"opposite": "flat", "resolutions": [1, 3, 9], "loads": ["1 MPa", "10 MPa", "40 MPa"]}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fractalcontact.size_effect.eq6.PARTS", parts)
-        patch.setattr(windows, "window_states", partial(windows.window_states, parts=parts))
-        return joint_of(heights, ("window_states", "closure", "windows"), **own)
+    return joint_of(heights, ("window_states", "closure", "windows"), **own)
 
 
 def slid(heights):
@@ -113,11 +108,11 @@ def saw(nodes):
 WORLDS = {
     "Cantor punch": lambda: pressed(np.tile(cantor_punch(5), (243, 1))),
     # A third of a punch of five generations is one of four, or a gap.
-    "Cantor punch in thirds": lambda: cut(np.tile(cantor_punch(5), (243, 1)), (1, 3)),
+    "Cantor punch in thirds": lambda: cut(np.tile(cantor_punch(5), (243, 1))),
     "rough face": lambda: pressed(rough(243, "0.03 mm", "1 mm")),
     # All windows of it are alike.
-    "cut of a long surface": lambda: cut(rough(128, "0.002 mm", "0.8 mm"), (1, 2, 4)),
-    "quadrants": lambda: cut(quadrants(128), (1, 2)),
+    "cut of a long surface": lambda: cut(rough(128, "0.002 mm", "0.8 mm")),
+    "quadrants": lambda: cut(quadrants(128)),
     "level isotropic face": lambda: slid(rough(256, "0.1 mm", "1 mm")),
     "tilted face": lambda: slid(rough(320, "0.1 mm", "1 mm") + tilted_in_the_middle(320)),
     "waves along x": lambda: slid(

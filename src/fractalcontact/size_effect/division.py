@@ -11,6 +11,15 @@ PARTS = (1, 2, 3, 4, 6, 8)
 MIN_CELLS = 16
 
 
+def divisions(shape: tuple[int, int]) -> tuple[int, ...]:
+    """Divisions of a window along a side: :data:`PARTS`, or thirds and ninths of 3^n cells.
+
+    A surface built in thirds is cut through by any other division.
+    """
+    side = min(shape)
+    return (1, 3, 9) if side >= 81 and 3 ** round(np.log(side) / np.log(3)) == side else PARTS
+
+
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
     """Divisions that are solved: the whole window, and those of `MIN_CELLS` per side or more."""
     return [n for n in parts if n == 1 or min(shape) // n >= MIN_CELLS]

@@ -41,7 +41,8 @@ def size_law(states: xr.Dataset, domains: np.ndarray | None = None) -> xr.Datase
     (normal_force, part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size with
     the interval over them, NaN where one of them holds too few nodes; ``min_nodes``,
     ``edge_ratio`` and ``central_load``. Over (normal_force,): ``area_exponent``,
-    ``compliance_exponent`` and ``gap_exponent``, by :func:`size_effect.size_exponents.add_size_exponents`.
+    ``compliance_exponent`` and ``gap_exponent``, by
+    :func:`size_effect.size_exponents.add_size_exponents`.
 
     Edges: a window stands alone, and the rigid block presses its rim harder where the bulk is soft
     beside the interface. Both compliances are equal (``edge_ratio`` 1) at sides of about the
