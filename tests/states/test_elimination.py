@@ -16,7 +16,7 @@ def test_elimination_ends_on_the_contact_of_a_rough_face(fraction):
     heights = self_affine((16, 16), 0.1, 0.8, rms=0.02, seed=1)
     clearance = heights.max() - heights
     closure = float(np.quantile(clearance, fraction))
-    _, steps, nodes, wrong = _eliminated(clearance, space, closure)
+    steps, nodes, wrong = _eliminated(clearance, space, closure)
     state = solve_contact(heights, space, closure=closure, rtol=1e-8)
     assert (nodes, wrong) == (np.count_nonzero(state.in_contact), 0)
     assert steps > 1

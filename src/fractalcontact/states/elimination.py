@@ -23,9 +23,7 @@ TENTATIVE = (0.1, 0.3, 0.6)
 ROUNDING = 1e-9
 
 _TABLE = {
-    "elimination_closure": ("tentative", "mm", "closure at which elimination was tried"),
     "elimination_steps": ("tentative", "1", "systems solved until no node was in tension"),
-    "elimination_nodes": ("tentative", "1", "nodes in contact that elimination left"),
     "elimination_wrong": (
         "tentative",
         "1",
@@ -39,8 +37,8 @@ def elimination_alone(loading: JointLoading) -> xr.Dataset:
     """Contact sets by elimination at the one offset of a loading, at three closures.
 
     Over (tentative,), the fraction of the nodes that interpenetrate before anything is dropped:
-    ``elimination_closure``, ``elimination_steps``, ``elimination_nodes`` and ``elimination_wrong``,
-    on every k-th node of the window, at most :data:`MAX_SIDE` along a side. Flush faces have NaN.
+    ``elimination_steps`` and ``elimination_wrong``, on every k-th node of the window, at most
+    :data:`MAX_SIDE` along a side. Flush faces have NaN.
     """
     composite = loading.composite(loading.cells.item())
     factor = -(-max(composite.shape) // MAX_SIDE)
@@ -49,16 +47,17 @@ def elimination_alone(loading: JointLoading) -> xr.Dataset:
     clearance = heights.max() - heights
     closures = np.quantile(clearance, TENTATIVE)
     rows = [_eliminated(clearance, space, float(closure)) for closure in closures]
-    columns = dict(zip(_TABLE, np.array(rows).T, strict=False))
+    steps, _, wrong = np.array(rows).T
+    columns = {"elimination_steps": steps, "elimination_wrong": wrong}
     columns["elimination_side"] = max(heights.shape)
     return labelled_dataset(_TABLE, columns, coords={"tentative": list(TENTATIVE)})
 
 
 def _eliminated(clearance: np.ndarray, space: HalfSpace, closure: float) -> tuple[float, ...]:
-    """Closure, systems solved, nodes left and nodes dropped wrongly."""
+    """Systems solved, nodes left and nodes dropped wrongly."""
     clearance = clearance.ravel()
     if not closure > 0:
-        return (np.nan,) * 4
+        return (np.nan,) * 3
     inside = np.flatnonzero(clearance < closure)
     influence = _influence(space, inside)
     interference = closure - clearance[inside]
@@ -73,7 +72,7 @@ def _eliminated(clearance: np.ndarray, space: HalfSpace, closure: float) -> tupl
         kept &= ~tension
     penetration = interference - influence @ pressure
     wrong = np.count_nonzero(~kept & (penetration > ROUNDING * closure))
-    return closure, steps, np.count_nonzero(kept), wrong
+    return steps, np.count_nonzero(kept), wrong
 
 
 def _influence(space: HalfSpace, nodes: np.ndarray) -> np.ndarray:
