@@ -40,7 +40,7 @@ def split(heights: ArrayLike, parts: int) -> np.ndarray:
 
 def occupied_windows(domain: np.ndarray, parts: int) -> np.ndarray:
     """Sub-windows of :func:`split` in which the contact domain (ny, nx) of the whole has a node."""
-    return split(domain, parts).any(axis=(1, 2))
+    return np.asarray(split(domain, parts).any(axis=(1, 2)))
 
 
 def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:

@@ -225,7 +225,10 @@ def lines_form_above_one(joint: Joint) -> Finding:
         f"clusters three times as long as wide hold {number(ends[0], 0)} % of the contact where "
         f"Delta_sigma is below 1 and {number(ends[1], 0)} % where it is above"
     )
-    loads = f"{loads_of(int(above.sum()), above.size)} above 1, {int(below.sum())} below"
+    loads = (
+        f"Delta_sigma is above 1 at {loads_of(int(above.sum()), above.size)} and below at "
+        f"{int(below.sum())}"
+    )
     note = f"{loads}; {margin_words(name)}"
     if not np.isfinite(difference.width):
         return Finding(UNDETERMINED, numbers, f"{note}; three loads needed")

@@ -55,8 +55,8 @@ def closure_grows_as_roughness(joint: Joint, evidence: Evidence) -> Finding:
     )
     return Finding(
         within_margin(less, all_claims()[name].margin),
-        f"closure ~ b^{number(closure)}, sigma_z ~ b^{number(roughness)}; the exponents differ by "
-        f"{number(less, 2, '+')}",
+        f"closure ~ b^x, x = {number(closure)}; sigma_z ~ b^x, x = {number(roughness)}; they "
+        f"differ by {number(less, 2, '+')}",
         f"{evidence.reference}; {margin_words(name)}",
     )
 
@@ -104,8 +104,8 @@ def friction_angle_falls_with_size(joint: Joint) -> Finding:
     return Finding(
         HOLDS if verdicts.count(HOLDS) == cases else verdict,
         f"the angle falls at equal v/b in {falls or 'none'} of {cases} cases",
-        f"it changes by {ends} degrees per doubling of b; margin {compact(margin, 6)} degree; "
-        f"surely no fall in {no_fall or 'none'}",
+        f"it changes by {ends} degrees per doubling of b; margin {compact(margin, 6)} degree"
+        f"{f'; it surely does not fall in {no_fall}' if no_fall else ''}",
     )
 
 
