@@ -114,8 +114,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
         (states["largest_void"].transpose(*dims), "void_exponent", "the largest void"),
         (heights, "roughness_exponent", "sigma_z about the own plane"),
     ):
-        usable = of_usable_sizes(values.values, nodes.values, RESOLVED_NODES)
-        usable = values.copy(data=usable)
+        usable = values.copy(data=of_usable_sizes(values.values, nodes.values, RESOLVED_NODES))
         add_size_exponents(result, exponent, usable, places, f"exponent of {words} against b")
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])

@@ -72,7 +72,7 @@ def _eliminated(clearance: np.ndarray, space: HalfSpace, closure: float) -> tupl
         kept &= ~tension
     penetration = interference - influence @ pressure
     wrong = np.count_nonzero(~kept & (penetration > ROUNDING * closure))
-    return steps, np.count_nonzero(kept), wrong
+    return steps, int(np.count_nonzero(kept)), int(wrong)
 
 
 def _influence(space: HalfSpace, nodes: np.ndarray) -> np.ndarray:
