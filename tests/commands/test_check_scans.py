@@ -306,10 +306,13 @@ def test_outliers_are_not_the_only_word_on_a_misread_file(folder, check):
     _, out = check()
     misread, spiked = (" ".join(part.split()) for part in out.split("spiked.npy"))
     assert (
-        "2 outliers kept, up to 500 mm from the mean plane where the relief of all other" in misread
+        "2 outliers filled in the study, up to 500 mm from the mean plane where the relief of all"
+        in misread
     )
     assert "probably mark missing cells, or the file is misread" in misread
-    assert "1 outlier kept, up to" in spiked
+    assert "1 outlier filled in the study, up to" in spiked
+    write_scan(folder / "spiked.npy", z, 0.2, sidecar={"outliers": "keep"})
+    assert "1 outlier kept, up to" in " ".join(check()[1].split())
     assert "misread" not in spiked
 
 

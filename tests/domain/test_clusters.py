@@ -15,6 +15,8 @@ from fractalcontact.domain.clusters import (
     MIN_OCTAVES,
     cluster_sizes,
     cluster_statistics,
+    elongations,
+    largest_void,
     morisita_index,
     octave_counts,
     quadrat_counts,
@@ -65,6 +67,28 @@ def test_checkerboard_of_quadrats_is_localised():
     found = cluster_statistics(np.kron(np.indices((8, 8)).sum(axis=0) % 2 == 0, np.ones((8, 8))), 1)
     assert found["morisita"] == pytest.approx(4095 / 2047)
     assert found["clusters"] == 1
+
+
+def test_length_over_width_of_clusters():
+    domain = np.zeros((20, 40), bool)
+    domain[1, 2:5] = domain[4:8, 2:6] = domain[12, 3:5] = True  # a line, a square, a pair
+    for n in range(4):
+        domain[14 + n, 20 + n] = True  # a line over the corners
+    np.testing.assert_allclose(elongations(domain)[:3], [3, 1, 2])
+    assert elongations(domain)[3] > 3
+    turned = elongations(domain.T)
+    np.testing.assert_allclose(np.sort(turned), np.sort(elongations(domain)))
+    # Of the 3 + 16 + 2 + 4 nodes those of both lines are in long clusters.
+    assert cluster_statistics(domain, 0.1)["long_share"] == pytest.approx(7 / 25)
+
+
+def test_the_largest_void_is_the_largest_distance_to_the_contact_twice():
+    domain = np.zeros((9, 9), bool)
+    assert np.isnan(largest_void(domain, (0.5, 0.5)))
+    domain[4, 0] = True
+    assert largest_void(domain, (0.5, 0.5)) == pytest.approx(2 * 0.5 * np.hypot(8, 4))
+    assert largest_void(domain, (0.5, 1.0)) == pytest.approx(2 * np.hypot(8, 2))
+    assert largest_void(np.ones((4, 4), bool), (0.5, 0.5)) == 0
 
 
 def test_octaves_begin_at_powers_of_two():

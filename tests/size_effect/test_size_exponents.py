@@ -46,6 +46,17 @@ def test_exact_power_is_recovered_without_width(exponent):
     assert (found.n, *np.exp(found.over)) == (6, pytest.approx(3.0), pytest.approx(24.0))
 
 
+def test_windows_that_do_not_count_leave_the_exponent_to_the_others():
+    values = windows_of(np.ones((24, 24))) * 3 * SIDES[:, np.newaxis] ** 0.4
+    for k, places in enumerate(PLACES):
+        if len(places) > 1:
+            values[k, 0] = np.nan
+    found = size_exponent(PARTS, SIDES, values, PLACES)
+    np.testing.assert_allclose(found.ends, 0.4, atol=1e-9)
+    values[1:, 1:] = np.nan
+    assert np.isnan(size_exponent(PARTS, SIDES, values, PLACES).value)
+
+
 def test_quarters_left_out():
     np.testing.assert_allclose(kept_fractions(1, np.arange(1)), 0.75)
     np.testing.assert_allclose(kept_fractions(2, np.arange(4)), 1 - np.eye(4))

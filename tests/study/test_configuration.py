@@ -239,6 +239,22 @@ SCANNED = ScanFiles("one", Path("one.x3p"), None, None)
 PAIR = ScanFiles("one", Path("one.lower.x3p"), Path("one.upper.x3p"), None)
 
 
+@pytest.mark.parametrize(
+    ("scan", "own", "expected"),
+    [
+        (SCANNED, {}, "fill"),
+        (SCANNED, {"outliers": "keep"}, "keep"),
+        (SCANNED, {"opposite": "flat"}, "keep"),
+        (PAIR, {}, "keep"),
+        (None, {}, "keep"),
+    ],
+)
+def test_a_face_against_its_own_match_fills_outliers_unless_told(study, scan, own, expected):
+    assert resolve_settings(study, "one", own, "study", scan).outliers == expected
+    study["defaults"]["outliers"] = "mask"
+    assert resolve_settings(study, "one", {}, "study", scan).outliers == "mask"
+
+
 def test_the_seating_pressure_is_a_small_stress_that_a_study_may_change():
     assert resolve_settings(ROCK, None, {}, "x").seating_pressure == 0.25
     stated = ROCK | {"defaults": ROCK["defaults"] | {"seating_pressure": "10 kPa"}}

@@ -94,6 +94,13 @@ def stages(**changes):
         "equal_v_exponent": -0.3,
         "length": 0.5,
         "uncorrelated": 2.0,
+        "face_hurst": 0.8,
+        "void_exponent": 0.6,
+        "long_share": [0.1, 0.2, 0.6, 0.7],
+        "star": [1.0, 2.0, 4.0, 8.0],
+        "slope_angles": [70.0, 65.0, 60.0, 55.0],
+        "truncated": 0.0,
+        "wrong": [0.0, 0.0, 0.0],
     } | changes
     dims = ("direction", "offset", "resolution", "normal_force")
     coords = {"direction": ["W"], "offset": V, "resolution": [1], "normal_force": LOADS}
@@ -155,10 +162,16 @@ def stages(**changes):
             ("offset", "normal_force"),
             np.asarray(values["window_exponent"])[:, np.newaxis] + by,
         )
-        closing = np.full((len(V), 1), values["closure_exponent"] + by)
+        closing = np.full((len(V), 1), values["closure_exponent"] + by / 2)
         windows[f"closure_exponent{end}"] = ("offset", "normal_force"), closing
         density = np.full((len(V), 1), values["density_exponent"] + by)
         windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
+        of_void = np.full((len(V), 1), values["void_exponent"] + by)
+        windows[f"void_exponent{end}"] = ("offset", "normal_force"), of_void
+        of_heights = np.full((len(V), 1), 0.5 + by / 100)
+        windows[f"roughness_exponent{end}"] = ("offset", "normal_force"), of_heights
+        windows[f"face_hurst{end}"] = (), values["face_hurst"] + by / 2
+        windows[f"expected_hurst{end}"] = (), 0.8 + by / 2
         windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
             ("share", "normal_force"),
             np.asarray(-np.inf if values["bounded"] and by < 0 else by)
@@ -166,6 +179,15 @@ def stages(**changes):
         )
         at_one_v = np.full((2, 1), values["equal_v_exponent"] + by / 2)
         windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
+    angles = np.reshape(values["slope_angles"], (1, 4, 1)) + np.zeros((2, 1, 1))
+    of_sizes = "share", "part", "normal_force"
+    windows |= {
+        "side": ("part", [20.0, 10.0, 5.0, 2.5][::-1]),
+        "limit_slope_angle": (of_sizes, angles),
+        "truncated_fraction_at_equal_v_over_b": (of_sizes, np.full((2, 4, 1), values["truncated"])),
+        "face_hurst_b_min": 0.2,
+        "face_hurst_b_max": 2.0,
+    }
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     lost = np.full(4, values["uncorrelated"])
     slid = slid.assign(undecided_plateaus(RIGID, slid["face_correlation"].values, lost))
@@ -215,6 +237,7 @@ def stages(**changes):
         "domains": xr.Dataset(
             {
                 "morisita": states("morisita"),
+                "long_share": over_boxes(values["long_share"]),
                 **{f"delta_sigma{end}": over_boxes(found) for end, found in of_box.items()},
                 "fit_min": (dims, np.full((1, len(V), 1, len(LOADS)), 0.1)),
                 "fit_max": (dims, np.full((1, len(V), 1, len(LOADS)), 5.0)),
@@ -235,8 +258,21 @@ def stages(**changes):
             coords,
         ),
         "scaling": xr.Dataset(
-            {name: over_loads(found) for name, found in scaling.items()},
-            {"direction": ["W"], "offset": V, "normal_force": LOADS},
+            {name: over_loads(found) for name, found in scaling.items()}
+            | {
+                "eq6_sigma_star": (
+                    ("estimator", *over_loads(0)[0]),
+                    [over_loads(values["star"])[1]],
+                )
+            },
+            {"direction": ["W"], "offset": V, "normal_force": LOADS, "estimator": ["box"]},
+        ),
+        "error_budget": xr.Dataset(
+            {
+                "elimination_wrong": ("tentative", values["wrong"]),
+                "elimination_steps": ("tentative", [3.0, 4.0, 5.0]),
+                "elimination_side": 20.0,
+            }
         ),
         "area": xr.Dataset(
             {
@@ -267,6 +303,10 @@ def stages(**changes):
                         np.broadcast_to(values["eq6_less"], (2, 2))
                         + np.sign(by) * values["eq6_half"],
                     )
+                    for end, by in ends.items()
+                },
+                **{
+                    f"area_exponent{end}": ("normal_force", [-0.1 + by, 0.0 + by])
                     for end, by in ends.items()
                 },
                 "beyond_study": ("normal_force", values["beyond"]),

@@ -11,7 +11,7 @@ import math
 import sys
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..core.errors import InputError, said_in_one_line
@@ -23,7 +23,7 @@ from ..gridding.outline import outline_words
 from ..joint.joint import choose_offsets
 from ..measured.beforehand import check_tests
 from ..measured.readings import read_test
-from ..report.scan_words import gap_words, warnings_of_specimen
+from ..report.scan_words import gap_words, outlier_words, warnings_of_specimen
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
@@ -128,6 +128,11 @@ def _check(scan, study, source, stated):
     )
     tests = check_tests(specimen, settings, solver_settings(study, source))
     row = _specimen_row(scan, specimen, scan_quality(specimen, settings.resolutions))
+    if specimen.attrs["outlier_count"] and settings.outliers == "fill" and not scan.upper:
+        # Outliers that are filled may be missing cells, or a misread file: their heights tell.
+        kept = replace(settings, outliers="keep")
+        as_scanned = prepare_specimen(scan.lower, None, options, kept, scan.name)
+        row.warnings.append(outlier_words(as_scanned, "filled in the study"))
     _add_tests(row, tests)
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
     (row.warnings if doubtful else row.lines).append(dimension_words(dimension))

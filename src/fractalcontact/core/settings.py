@@ -114,7 +114,8 @@ class SpecimenSettings:
     ]
     """`keep`: outlying cells are counted and shown, not altered. `mask`: they become missing.
     `fill`: outlying cells, lone spikes and deep overlaps of two faces (`scans/README.md`) are
-    filled from the cells around"""
+    filled from the cells around. One face against its own match (`opposite: match`) fills them
+    unless told otherwise: each spike would meet its own copy an offset away"""
     fill_holes: Annotated[
         int,
         key(

@@ -15,6 +15,7 @@ CLUSTER_FIELDS = {
     "clusters": ("1", "contact clusters, neighbours by side or corner"),
     "largest_share": ("1", "fraction of the contact area in the largest cluster"),
     "cluster_area_mean": ("mm2", "mean area of a contact cluster"),
+    "long_share": ("1", "fraction of the contact in clusters three times as long as wide"),
     **rows_of("cluster_exponent", "1", "beta of N(clusters of area a or more) ~ a^-beta"),
     "cluster_fit_min": ("mm2", "smallest cluster in the fit of beta"),
     "cluster_fit_max": ("mm2", "largest cluster in the fit of beta"),
@@ -35,6 +36,9 @@ QUADRATS = 8
 MIN_OCTAVES = 4
 MIN_CLUSTERS = 50
 
+
+#: Least ratio of length to width of a long cluster: that of three nodes in line.
+MIN_ELONGATION = 3.0
 
 #: Nodes that touch over a side or a corner belong together.
 NEIGHBOURS = np.ones((3, 3), int)
@@ -58,6 +62,9 @@ def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
         "clusters": float(number),
         "largest_share": sizes.max() / sizes.sum() if number else np.nan,
         "cluster_area_mean": sizes.mean() * cell if number else np.nan,
+        "long_share": sizes[elongations(domain) >= MIN_ELONGATION].sum() / sizes.sum()
+        if number
+        else np.nan,
         **size_exponent(octaves, sizes, cell),
         "morisita": index,
         "morisita_scatter": scatter,
@@ -69,6 +76,34 @@ def cluster_sizes(domain: ArrayLike) -> np.ndarray:
     """Nodes in each cluster of a domain; neighbours by side or corner belong together."""
     labels, _ = scipy.ndimage.label(domain, structure=NEIGHBOURS)
     return np.bincount(labels.ravel())[1:]
+
+
+def elongations(domain: np.ndarray) -> np.ndarray:
+    """Length over width of each cluster, in the order of :func:`cluster_sizes`.
+
+    Both are those of the ellipse, or rectangle, with the second moments of the cluster's cells.
+    """
+    labels, number = scipy.ndimage.label(domain, structure=NEIGHBOURS)
+    y, x = np.nonzero(labels)
+    of_node = labels[y, x] - 1
+    nodes = np.bincount(of_node, minlength=number)
+
+    def mean(values):
+        return np.bincount(of_node, values, minlength=number) / np.maximum(nodes, 1)
+
+    y, x = y - mean(y)[of_node], x - mean(x)[of_node]
+    # A cell has the second moment 1/12 about its own middle.
+    yy, xx, xy = mean(y * y) + 1 / 12, mean(x * x) + 1 / 12, mean(x * y)
+    middle, half = (yy + xx) / 2, np.hypot((yy - xx) / 2, xy)
+    # Rounding may take the moments of a line of nodes a little below their ratio.
+    return np.sqrt((middle + half) / (middle - half)) * (1 + 1e-9)
+
+
+def largest_void(domain: np.ndarray, spacing: tuple[float, float]) -> float:
+    """Diameter of the largest disc about a node that holds no contact, mm; NaN without contact."""
+    if not domain.any():
+        return np.nan
+    return 2 * float(scipy.ndimage.distance_transform_edt(~domain, spacing).max())
 
 
 def octave_counts(sizes: np.ndarray, most: int) -> np.ndarray:

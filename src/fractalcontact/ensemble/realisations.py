@@ -78,7 +78,9 @@ EXPONENTS = {
     exponent: ({"area_fraction": "corrected_area_share"}.get(name, name), fewest, words)
     for name, (exponent, fewest, words) in WINDOW_QUANTITIES.items()
 } | {
-    "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch")
+    "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch"),
+    "roughness_exponent": ("sigma_z", RESOLVED_NODES, "rms height about the own plane"),
+    "void_exponent": ("largest_void", RESOLVED_NODES, "largest void"),
 }
 
 
@@ -247,7 +249,10 @@ def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}
     for exponent, (name, fewest, words) in EXPONENTS.items():
-        usable = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
+        counted = windows[[name, "nodes"]]
+        if name == "corrected_area_share":
+            counted = counted.where(windows["occupied"] != 0)
+        usable = of_usable_sizes(counted[name].values, counted["nodes"].values, fewest)
         values[exponent] = size_exponent(parts, windows["side"].values, usable, places).value
         table[exponent] = ((), "1", f"exponent of {words} against b at equal sigma_0")
     return labelled(table, values)

@@ -26,7 +26,7 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
     attrs = specimen.attrs
     warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
     if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
-        warnings.append(_outlier_words(specimen))
+        warnings.append(outlier_words(specimen))
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
     warnings += filter(None, (_same_file_words(specimen), _moved_words(specimen)))
@@ -75,8 +75,11 @@ def _moved_words(specimen):
     )
 
 
-def _outlier_words(specimen):
-    """Sentence on the outliers kept: number, largest distance, likely cause."""
+def outlier_words(specimen: xr.Dataset, treated: str = "kept") -> str:
+    """Sentence on outliers of a specimen that has their heights: number, distance, likely cause.
+
+    ``treated`` says what becomes of them.
+    """
     # An atlas gives back numbers of numpy, and masks as whole numbers.
     count, cells = int(specimen.attrs["outlier_count"]), specimen["outlier"].values.astype(bool)
     heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
@@ -84,8 +87,8 @@ def _outlier_words(specimen):
     rest = np.concatenate([z[~cells & np.isfinite(z)] for z in heights])
     relief = np.ptp(rest)
     words = (
-        f"{count} outlier{'s' * (count > 1)} kept, up to {length_words(highest)} from the mean "
-        f"plane where the relief of all other cells is {length_words(relief)}; "
+        f"{count} outlier{'s' * (count > 1)} {treated}, up to {length_words(highest)} from the "
+        f"mean plane where the relief of all other cells is {length_words(relief)}; "
     )
     if highest > FAR_OUT * relief:
         words += (

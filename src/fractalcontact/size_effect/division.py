@@ -11,6 +11,15 @@ PARTS = (1, 2, 3, 4, 6, 8)
 MIN_CELLS = 16
 
 
+def divisions(shape: tuple[int, int]) -> tuple[int, ...]:
+    """Divisions of a window along a side: :data:`PARTS`, or thirds and ninths of 3^n cells.
+
+    A surface built in thirds is cut through by any other division.
+    """
+    side = min(shape)
+    return (1, 3, 9) if side >= 81 and 3 ** round(np.log(side) / np.log(3)) == side else PARTS
+
+
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
     """Divisions that are solved: the whole window, and those of `MIN_CELLS` per side or more."""
     return [n for n in parts if n == 1 or min(shape) // n >= MIN_CELLS]
@@ -27,6 +36,11 @@ def split(heights: ArrayLike, parts: int) -> np.ndarray:
     first_y, first_x = _first_cells(heights.shape, parts)
     middle = heights[first_y : first_y + parts * ny, first_x : first_x + parts * nx]
     return middle.reshape(parts, ny, parts, nx).swapaxes(1, 2).reshape(parts**2, ny, nx)
+
+
+def occupied_windows(domain: np.ndarray, parts: int) -> np.ndarray:
+    """Sub-windows of :func:`split` in which the contact domain (ny, nx) of the whole has a node."""
+    return np.asarray(split(domain, parts).any(axis=(1, 2)))
 
 
 def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:

@@ -39,7 +39,7 @@ from ..domain.analysis import corrected_scaling
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
 from ..states.loading import JointLoading
-from .division import PARTS, split
+from .division import divisions, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole
 from .size_law import size_law
@@ -90,10 +90,10 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     def estimate(whole: xr.Dataset, domains: np.ndarray, parts: Sequence[int]) -> xr.Dataset:
         return _dimensions(mapped, whole, domains, parts)
 
-    states, _ = solve_sub_windows(mapped, PARTS, estimate)
+    states, domains = solve_sub_windows(mapped, divisions(mapped.shape), estimate)
     of_windows = ["nodes", "nodes_error", "interface_closure", "bulk_compliance"]
     of_windows += ["whole_area", "whole_area_sampling", "whole_left"]
-    result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
+    result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states, domains))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], MIN_NODES_PER_RESOLUTION))

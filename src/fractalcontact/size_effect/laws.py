@@ -109,6 +109,13 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     ]
     dims = ("part", "window", "offset", "normal_force")
     nodes = states["nodes"].transpose(*dims)
+    heights = states["sigma_z"].broadcast_like(nodes).transpose(*dims)
+    for values, exponent, words in (
+        (states["largest_void"].transpose(*dims), "void_exponent", "the largest void"),
+        (heights, "roughness_exponent", "sigma_z about the own plane"),
+    ):
+        usable = values.copy(data=of_usable_sizes(values.values, nodes.values, RESOLVED_NODES))
+        add_size_exponents(result, exponent, usable, places, f"exponent of {words} against b")
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])
         if name in _OF_INTERFACE:
@@ -116,8 +123,11 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
             below = result[name] < 0
             for kept in (*names_of(name), f"{name}_error"):
                 result[kept] = result[kept].where(~below)
-        values = states[name].transpose(*dims)
-        values = values.copy(data=of_usable_sizes(values.values, nodes.values, fewest))
+        values, of_nodes = states[name].transpose(*dims), nodes
+        if name == "corrected_area_share":
+            counts = states["occupied"].transpose(*dims) != 0
+            values, of_nodes = values.where(counts), nodes.where(counts)
+        values = values.copy(data=of_usable_sizes(values.values, of_nodes.values, fewest))
         add_size_exponents(result, exponent, values, places, words)
     add_fitted(result)
     add_lines(result)

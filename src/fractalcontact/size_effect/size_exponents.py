@@ -55,9 +55,9 @@ def size_exponent(
 ) -> Estimate:
     """Exponent d ln(quantity) / d ln b of one quantity, of means over disjoint sub-windows.
 
-    Sides (part,) in mm; positive values (part, window), of which a size without one in its first
-    window is left out; ``places`` where the sub-windows of each size lie. NaN with fewer than two
-    sizes, or where no size has several windows.
+    Sides (part,) in mm; positive values (part, window), NaN of sub-windows that do not count; a
+    size without any is left out. ``places`` are where the sub-windows of each size lie. NaN with
+    fewer than two sizes, or where no size has several windows.
 
     The line through the logarithms of the means, all sizes alike. Its error has two independent
     parts: that of all sizes with several windows, by the jackknife over quarters, in which what
@@ -69,7 +69,7 @@ def size_exponent(
     and quarters of the side, the area exponents scattered by 0.005 to 0.011 about zero, and the
     intervals, all of which held zero, reached 0.05 to 0.14 to either side.
     """
-    used = [k for k in range(len(parts)) if values[k, 0] > 0]
+    used = [k for k in range(len(parts)) if (values[k] > 0).any()]
     several = [k for k in used if parts[k] > 1]
     if len(used) < 2 or not several:
         return Estimate()
@@ -79,11 +79,15 @@ def size_exponent(
     variance = 0.0
     for i, k in enumerate(used):
         own = values[k, : len(places[k])]
-        weights = np.vstack([np.ones(len(own)), kept_fractions(parts[k], places[k])])
-        means[i] = np.log(weights @ own / weights.sum(axis=1))
+        counts = np.isfinite(own)
+        weights = np.vstack([np.ones(len(own)), kept_fractions(parts[k], places[k])])[:, counts]
+        # Without a quarter that holds all windows that count there is no mean, and no interval.
+        with np.errstate(invalid="ignore"):
+            means[i] = np.log(weights @ own[counts] / weights.sum(axis=1))
         if parts[k] == 1:
-            largest = min(several, key=lambda size: parts[size])
-            scatter = np.var(np.log(values[largest, : len(places[largest])]), ddof=1)
+            largest = values[min(several, key=lambda size: parts[size])]
+            counted = np.log(largest[np.isfinite(largest)])
+            scatter = np.var(counted, ddof=1) if counted.size > 1 else np.nan
             variance = lever[i] ** 2 * float(scatter)
     slope, *replicates = lever @ means
     variance += (QUARTERS - 1) * float(np.var(replicates))

@@ -10,6 +10,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.intervals import mean_interval
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from .division import occupied_windows
 from .size_exponents import add_size_exponents, of_usable_sizes, usable_sizes
 
 #: Quantities of sub-windows: name, exponent, fewest nodes of every window of a size, what it is.
@@ -31,22 +32,17 @@ _TABLE = {
 }
 
 
-def size_law(states: xr.Dataset) -> xr.Dataset:
+def size_law(states: xr.Dataset, domains: np.ndarray | None = None) -> xr.Dataset:
     """Corrected area, compliance and mean gap against b at equal nominal pressure.
 
-    ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`. Over (normal_force,
-    part): :data:`WINDOW_QUANTITIES`, means over the disjoint sub-windows of a size with the
-    interval over them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
-    ``central_load``. Over (normal_force,): ``area_exponent``, ``compliance_exponent`` and
-    ``gap_exponent``, by :func:`size_effect.size_exponents.add_size_exponents`.
-
-    Edges: a window stands alone, and the rigid block presses its rim harder where the bulk is soft
-    beside the interface. Both compliances are equal (``edge_ratio`` 1) at sides of about the
-    elastic length E* d w_int / d sigma_0; longer windows carry like a punch, at their rim. The
-    ratio grows as b, so that edges enter large windows first: ``central_load``, where several
-    windows have a mean, falls below 1 (that of a single window shows where its hills are as well).
-    A mean gap or compliance of such windows is one of the rim. A_r/A_0 hardly knows it as long as
-    A_r ~ F holds locally, for then it does not matter where the load is carried.
+    ``states`` and ``domains`` are those of :func:`size_effect.load_ladder.solve_sub_windows`. The
+    area counts sub-windows that hold contact of the whole window, all without ``domains``: in a
+    gap of the whole's contact a window that is pressed alone touches at another height. Over
+    (normal_force, part): :data:`WINDOW_QUANTITIES`, means over the disjoint sub-windows of a size
+    with the interval over them, NaN where one of them holds too few nodes; ``min_nodes``,
+    ``edge_ratio`` and ``central_load``. Over (normal_force,): ``area_exponent``,
+    ``compliance_exponent`` and ``gap_exponent``, by
+    :func:`size_effect.size_exponents.add_size_exponents`.
     """
     loads = states.sizes["normal_force"]
     tested = states.isel(step=slice(loads)).rename(step="normal_force")
@@ -55,6 +51,8 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     places = [np.arange(n) for n in states["windows"].values]
     compliance = tested["interface_compliance"].transpose(*dims)
     resolved = usable_sizes(nodes.values, RESOLVED_NODES)
+    solved = np.isfinite(nodes.values)
+    occupied = solved if domains is None else _occupied(tested, domains)
     edge_ratio = (tested["bulk_compliance"] / compliance.mean("window")).values
     result = labelled_dataset(
         _TABLE,
@@ -67,10 +65,25 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     ).assign(side=states["side"])
     for name, (exponent, fewest, words) in WINDOW_QUANTITIES.items():
         values = tested[name].transpose(*dims)
-        values = values.copy(data=of_usable_sizes(values.values, nodes.values, fewest))
+        counts = occupied if name == "area_fraction" else solved
+        data, of_nodes = (
+            np.where(counts, array, np.nan) for array in (values.values, nodes.values)
+        )
+        values = values.copy(data=of_usable_sizes(data, of_nodes, fewest))
         mean = mean_interval(values.values, axis=1).mapped(np.transpose)
         units = tested[name].attrs["units"]
         result.update(mean.variables(name, _OF_SIZE, units, f"mean {words} of sub-windows"))
         text = f"exponent of {words} against b at equal sigma_0"
         add_size_exponents(result, exponent, values, places, text)
     return result.drop_vars("side")
+
+
+def _occupied(tested: xr.Dataset, domains: np.ndarray) -> np.ndarray:
+    """Sub-windows (part, window, normal_force) that hold contact of the whole window."""
+    shape = *(tested.sizes[dim] for dim in ("part", "window")), len(domains)
+    occupied = np.zeros(shape, bool)
+    for k, parts in enumerate(tested["part"].values):
+        for load, domain in enumerate(domains):
+            of_size = occupied_windows(domain, int(parts))
+            occupied[k, : len(of_size), load] = of_size
+    return occupied

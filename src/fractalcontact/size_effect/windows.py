@@ -14,12 +14,13 @@ from roughcontact.contact.state import ContactState
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import JointSettings
+from ..domain.clusters import largest_void
 from ..joint.joint import sliding_axis
 from ..states.loading import JointLoading
 from ..states.settlement import interface_closure
 from ..states.state_scalars import state_area, state_errors
 from ..states.states import SOLVER_ERROR
-from .division import PARTS, solvable_parts, split, spread_windows
+from .division import PARTS, occupied_windows, solvable_parts, split, spread_windows
 from .local_roughness import local_roughness, roughness_by_size
 from .sub_windows import SubWindows
 
@@ -37,6 +38,8 @@ STATES = {
     "interface_compliance": ("mm/MPa", "compliance of the interface d w_int / d sigma"),
     "mean_gap": ("mm", "mean gap of the sub-window"),
     "nodes": ("1", "nodes in contact"),
+    "largest_void": ("mm", "diameter of the largest disc about a node that holds no contact"),
+    "occupied": ("1", "1 where the contact of the whole window has a node in the sub-window"),
     "interface_closure_error": ("mm", f"interface closure w_int, {SOLVER_ERROR}"),
     "area_share_error": ("1", f"real contact area A_r / A_0, {SOLVER_ERROR}"),
     "corrected_area_share_error": (
@@ -107,6 +110,7 @@ def solved_windows(
     values |= {name: np.full(dims[:3], np.nan) for name in SHAPES}
     settlement = np.full((len(parts), len(pressures)), np.nan)
     sides = np.full((len(parts), 2), np.nan)
+    whole_domains: dict[int, list[np.ndarray]] = {}
     for k, n in enumerate(parts):
         mated = split(loading.composite(0), n)[chosen[k]]
         for i, offset in enumerate(cells):
@@ -114,6 +118,11 @@ def solved_windows(
             where = f"{n} x {n} parts, offset {offset} cells"
             size = _Solved(loading, composites, pressures, where, places=chosen[k])
             size.extend(len(pressures))
+            if n == 1:
+                whole_domains[i] = size.domains
+            size.values["occupied"][:] = 1.0
+            for load, domain in enumerate(whole_domains.get(i, [])):
+                size.values["occupied"][:, load] = occupied_windows(domain, n)[chosen[k]]
             opened = composites.max(axis=(1, 2)) - mated.max(axis=(1, 2))
             shapes = {"rigid_opening": opened, "sigma_z": local_roughness(composites)}
             for name, of_windows in (size.values | shapes).items():
@@ -143,12 +152,16 @@ def solved_windows(
 
 
 class _Solved(SubWindows):
-    """Sub-windows all of whose states are kept, as ``values`` of :data:`STATES` (window, load)."""
+    """Sub-windows all of whose states are kept, as ``values`` of :data:`STATES` (window, load).
+
+    ``domains`` (load,) are the contact domains of a window alone.
+    """
 
     def __init__(self, loading: JointLoading[JointSettings], windows: np.ndarray, *more, **options):
         super().__init__(loading, windows, *more, **options)
         shape = len(windows), len(self.forces)
         self.values = {name: np.full(shape, np.nan) for name in STATES}
+        self.domains: list[np.ndarray] = []
 
     def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
         """Store :data:`STATES` of a state."""
@@ -165,6 +178,7 @@ class _Solved(SubWindows):
             "corrected_area_share": state_area(state) / area,
             "mean_gap": 0.0 if flush else state.gap.mean(),
             "nodes": np.count_nonzero(state.in_contact),
+            "largest_void": largest_void(state.in_contact, state.space.spacing),
             "interface_closure_error": 0.0 if flush else errors["closure_error"],
             "area_share_error": errors["area_error"] / area,
             "corrected_area_share_error": errors["area_corrected_error"] / area,
@@ -174,5 +188,7 @@ class _Solved(SubWindows):
             numbers["interface_compliance"] = area / stiffness - bulk
             error = errors["stiffness_error"] * area / stiffness**2
             numbers["interface_compliance_error"] = error
+        if len(self.flush) == 1:
+            self.domains.append(state.in_contact)
         for name, value in numbers.items():
             self.values[name][window, step] = value

@@ -33,6 +33,7 @@ from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
 from ..scan.other_readings import other_readings
 from ..states.contact_fields import contact_fields
+from ..states.elimination import elimination_alone
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
 from ..states.registration_spread import registration_spread, registration_values
@@ -140,7 +141,7 @@ def state_stages(
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
         "branches": joint_branches(loading, stages["closure"], mapped),
-        "error_budget": with_pressure(budget, area),
+        "error_budget": with_pressure(budget, area).merge(elimination_alone(loading)),
         "choices": plan.assign(requested_accuracy(solver)),
     }
 

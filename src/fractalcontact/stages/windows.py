@@ -6,6 +6,7 @@ import xarray as xr
 from ..core.datasets import titled
 from ..core.settings import Solver, WindowSettings
 from ..size_effect import windows
+from ..size_effect.division import divisions
 from ..size_effect.eq6 import size_test
 from ..states.loading import JointLoading
 from ..states.states import with_pressure
@@ -28,5 +29,8 @@ def window_stages(
     direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at(np.sort(joint.cells))
-    stages = {"window_states": windows.window_states(loading), "size_test": size_test(loading)}
+    stages = {
+        "window_states": windows.window_states(loading, divisions(loading.shape)),
+        "size_test": size_test(loading),
+    }
     return {name: with_pressure(stage, joint.area) for name, stage in stages.items()}

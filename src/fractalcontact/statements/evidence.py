@@ -79,6 +79,13 @@ class Evidence:
         """Exponent against the side b of sub-windows under the reference load."""
         return Estimate.read(self.joint.state("windows"), name)
 
+    def closure_beyond_roughness(self) -> Estimate:
+        """Exponent of the closure from first touch against b less that of sigma_z."""
+        closure, roughness = (
+            self.size_exponent(f"{of}_exponent") for of in ("closure", "roughness")
+        )
+        return difference_of(closure, roughness)
+
     def beyond_eq6(self, by: str) -> OverLoads:
         """Exponent of A_r/A_0 over b less that of eq. 6, of one of :data:`ESTIMATES`."""
         test = self.joint["size_test"].sel(estimator=by)
@@ -224,6 +231,12 @@ class OfRealisations(Evidence):
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""
         return self._mean(name)
+
+    def closure_beyond_roughness(self) -> Estimate:
+        """Mean exponent of the closure against b less that of sigma_z of the same realisation."""
+        return mean_interval(
+            (self.stage["closure_exponent"] - self.stage["roughness_exponent"]).values
+        )
 
     def beyond_eq6(self, by: str) -> OverLoads:
         """Exponent of A_r/A_0 over b less that of eq. 6, under the reference load."""

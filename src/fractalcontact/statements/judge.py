@@ -17,7 +17,7 @@ from ..core.claims import Claim, all_claims, claims_of
 from ..core.directions import slides
 from ..core.labels import cf_attrs
 from ..core.verdicts import UNDETERMINED
-from . import closure, nulls, scaling, sliding
+from . import closure, nulls, scaling, sizes, sliding
 from .findings import Finding, Joint
 
 #: Material of the paper by words in the name of a study's material.
@@ -26,7 +26,7 @@ MATERIALS = {"sandstone": "rock", "rock": "rock", "concrete": "concrete"}
 
 def rule_of(name: str) -> Callable[..., Finding]:
     """Function that judges a statement about one joint: the one of its name."""
-    for room in (closure, sliding, scaling, nulls):
+    for room in (closure, sliding, scaling, sizes, nulls):
         if hasattr(room, name):
             return getattr(room, name)
     raise KeyError(f"no rule is called {name!r}")

@@ -5,7 +5,8 @@ import xarray as xr
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS
+from ..core.fitting import MIN_POINTS, fit_line
+from ..core.intervals import mean_difference
 from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
@@ -132,6 +133,129 @@ def _rise(trend: Trend, name: str) -> Finding:
         return Finding(UNDETERMINED, f"{numbers}, but {few}", note)
     verdict = beyond_margin(trend.slope, all_claims()[name].margin, rising=True)
     return Finding(verdict, numbers, note)
+
+
+@of_a_kind
+def size_slope_falls_with_load(joint: Joint, evidence: Evidence) -> Finding:
+    """Slope 2 - Delta_sigma of eq. 6 over the decades of F, Delta_sigma by boxes.
+
+    That is how Fig. 13 has its slopes. What sub-windows of one joint show stands beside the
+    verdict.
+    """
+    name, trend = "size_slope_falls_with_load", evidence.trend("box")
+    if not trend.slope.known:
+        return Finding(UNDETERMINED, "too few loads have a dimension")
+    falls = trend.slope.mapped(np.negative, falling=True)
+    numbers = f"2 - Delta_sigma changes by {number(falls, 2, '+')} per decade of F"
+    note = f"{_between(trend.pressures)}; {margin_words(name)}"
+    if np.log10(trend.pressures[-1] / trend.pressures[0]) < MIN_DECADES:
+        few = f"the loads span less than {compact(MIN_DECADES, 6)} decade"
+        return Finding(UNDETERMINED, f"{numbers}, but {few}", note)
+    verdict = beyond_margin(falls, all_claims()[name].margin, rising=False)
+    return Finding(verdict, numbers, note, explanation=_measured_slopes(joint))
+
+
+def _measured_slopes(joint: Joint) -> str:
+    """Exponents of A_r/A_0 against b under the lightest and the heaviest load, in words."""
+    test = joint["size_test"]
+    test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
+    exponent = _known_loads(Estimate.read(test, "area_exponent"), test["nominal_pressure"].values)
+    if not exponent:
+        return ""
+    ends = [exponent[i] for i in dict.fromkeys((0, len(exponent) - 1))]
+    words = " and ".join(f"{number(x)} at {compact(pressure)} MPa" for x, pressure in ends)
+    return f"measured on sub-windows of this specimen, A_r/A_0 ~ b^x has x = {words}"
+
+
+def _known_loads(estimate: Estimate, pressures: np.ndarray) -> list[tuple[Estimate, float]]:
+    """Estimates and nominal pressures, MPa, of the loads that have one."""
+    return [(estimate[i], pressures[i]) for i in np.flatnonzero(estimate.known)]
+
+
+def sigma_star_depends_on_load(joint: Joint) -> Finding:
+    """Exponent m of sigma* ~ F^m, sigma* = F / b^Delta_sigma with the Delta_sigma of each load.
+
+    Delta_sigma is that by boxes. In units of mm this is the nominal pressure of a joint of b = 1
+    mm, the intercept of eq. 6. The claim holds where the interval of m lies above the margin.
+    """
+    name = "sigma_star_depends_on_load"
+    states = joint.states("scaling")
+    star = states["eq6_sigma_star"].sel(estimator="box").values
+    known = star > 0
+    m = fit_line(np.log(joint.forces[known]), np.log(star[known])).slope
+    if not np.isfinite(m.width):
+        return Finding(UNDETERMINED, "too few loads have a dimension")
+    pressures = joint.forces[known] / joint.area
+    return Finding(
+        beyond_margin(m, all_claims()[name].margin, rising=True),
+        f"sigma* ~ F^m, m = {number(m)}",
+        f"{_between(pressures)}; {margin_words(name)}",
+        explanation=_at_one_dimension(joint),
+    )
+
+
+def _at_one_dimension(joint: Joint) -> str:
+    """Exponent of F/A_r over F, which sigma* has at one Delta_sigma, in words."""
+    law = joint.reported.at_offset(joint.along("area"))
+    exponent = Estimate.read(law, "corrected_exponent")
+    if not exponent.known:
+        return ""
+    m = exponent.mapped(lambda value: 1 - value, falling=True)
+    return f"at one Delta_sigma it goes as F/A_r, with m = {number(m)}"
+
+
+@of_the_area
+def lines_form_above_one(joint: Joint) -> Finding:
+    """Fraction of the contact in long clusters: loads with Delta_sigma above 1 less those below.
+
+    A cluster is long if it is three times as long as wide. Delta_sigma is that by boxes and lies
+    surely on one side of 1. The claim holds where the interval of the difference lies above the
+    margin.
+    """
+    name = "lines_form_above_one"
+    states = joint.states("domains")
+    delta, long = Estimate.read(states, "delta_sigma"), states["long_share"].values
+    known = np.isfinite(long)
+    above, below = known & (delta.low > LINE), known & (delta.high < LINE)
+    if not above.any() or not below.any():
+        return Finding(UNDETERMINED, "no load has a Delta_sigma surely above 1, or none below")
+    difference = mean_difference(long[above], long[below])
+    ends = [100 * long[side].mean() for side in (below, above)]
+    numbers = (
+        f"clusters three times as long as wide hold {number(ends[0], 0)} % of the contact where "
+        f"Delta_sigma is below 1 and {number(ends[1], 0)} % where it is above"
+    )
+    loads = (
+        f"Delta_sigma is above 1 at {loads_of(int(above.sum()), above.size)} and below at "
+        f"{int(below.sum())}"
+    )
+    note = f"{loads}; {margin_words(name)}"
+    if not np.isfinite(difference.width):
+        return Finding(UNDETERMINED, numbers, f"{note}; three loads needed")
+    verdict = beyond_margin(difference, all_claims()[name].margin, rising=True)
+    return Finding(verdict, numbers, note)
+
+
+def elimination_finds_the_set(joint: Joint) -> Finding:
+    """Nodes that elimination drops and that interpenetrate, on a coarse grid of this joint.
+
+    The paper's algorithm drops nodes in tension and takes none back, so that each domain lies in
+    the one before. The claim holds where no dropped node interpenetrates at any of three closures.
+    """
+    test = joint["error_budget"]
+    wrong, steps = test["elimination_wrong"].values, test["elimination_steps"].values
+    tried = np.isfinite(wrong)
+    if not tried.any():
+        return Finding(UNDETERMINED, "the faces are flush")
+    right = int((wrong[tried] == 0).sum())
+    return Finding(
+        share(right, int(tried.sum())),
+        f"elimination ends on the contact set at {right or 'none'} of {tried.sum()} closures, "
+        f"after up to {steps[tried].max():.0f} systems",
+        f"{int(test['elimination_side'])} nodes along a side",
+        explanation="with Love's kernel no topography defeats elimination; with the paper's plate "
+        "read as a rigid square one can be constructed that does",
+    )
 
 
 @of_a_kind

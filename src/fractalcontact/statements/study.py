@@ -39,9 +39,12 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 
     The paper calls this exponent the size effect; no size is varied here. At least three surfaces
     against a plane are compared, whose composite topography is the face itself. Where each has
-    realisations, their means are compared.
+    realisations, their means are compared; where three have, those alone.
     """
     flat = [joint for joint in joints.values() if not slides(joint.settings["opposite"])]
+    of_kind = [joint for joint in flat if joint.realised]
+    if len(of_kind) >= 3:
+        flat = of_kind
     if len(flat) < 3:
         return Finding(UNDETERMINED, "fewer than three surfaces against a plane")
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])

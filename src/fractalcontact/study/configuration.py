@@ -77,6 +77,7 @@ def resolve_settings(
         "material": material,
         "boundary": said.get("boundary", layers.boundary()),
         "opposite": opposite,
+        "outliers": layers.outliers(),
         "directions": directions,
         "contact_directions": directions if flat else said.get("contact_directions", directions),
         "offsets": [0.0] if flat else layers.offsets(),
@@ -122,6 +123,7 @@ class _Layers:
             (self._study, source, f"specimens.{name}"),
             (own, self._said_in(), ""),
         )
+        self._outliers_unsaid = not any("outliers" in texts for texts, *_ in layers[1:])
         self.texts, self.values = {}, {}
         for texts, said_in, above in layers:
             self.texts |= texts
@@ -161,6 +163,14 @@ class _Layers:
                 f"{self.values['twins']}' in embedded.{self._name}"
             )
         return self.values.get("twins", 0) if self._scan else 0
+
+    def outliers(self):
+        """Treatment of outliers; a scanned face against its own match fills them unless told.
+
+        Each spike would meet the copy of itself in the other face and hold the two apart.
+        """
+        own_match = self._scan and not self._scan.upper and slides(self.values["opposite"])
+        return "fill" if self._outliers_unsaid and own_match else self.values["outliers"]
 
     def solved_loads(self, hardness):
         """Loads to be solved: of those in the defaults only what the hardness can carry."""
