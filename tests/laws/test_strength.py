@@ -298,13 +298,23 @@ def test_blocks_have_a_strength_by_each_rule_that_holds_for_their_length(twin):
     assert none["block_strength"].size == 0
 
 
+def within_largest_angle(end, strength):
+    """An end of a peak strength, which no rule takes beyond the largest friction angle."""
+    steepest = np.tan(np.radians(LARGEST_FRICTION_ANGLE)) * strength["nominal_pressure"]
+    return np.where(end > steepest, np.maximum(steepest, strength["peak_strength"]), end)
+
+
 def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):
     """Their curves rise by other angles; ends are those of the angle, truncated as it is."""
     chosen = settings([0.2, 0.8])
     dilatancy, joint = pressed(twin, chosen)
     alone = joint_strength(dilatancy, joint, twin, chosen).squeeze("contact_direction")
     assert np.isnan(alone["peak_angle_spread"])
-    assert np.isnan(alone["peak_strength_low"]).all()
+    for end, sign, factor in (("low", -1, 0.9), ("high", 1, 1.9)):
+        value = alone["peak_strength"]
+        off = np.hypot(alone["peak_strength_error"], (factor - 1) * value)
+        expected = within_largest_angle(np.maximum(value + sign * off, 0), alone)
+        np.testing.assert_allclose(alone[f"peak_strength_{end}"], expected, rtol=1e-6)
     own = dilatancy["elastic_dilatancy"].isel(normal_force=1).values.ravel()
     slid = dilatancy["offset_on_grid"].values.ravel()
     curves = [own, own + 0.1 * slid, own - 0.05 * slid, own + 0.2 * slid]
@@ -324,8 +334,10 @@ def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):
     np.testing.assert_array_equal(value, alone["peak_strength"])
     angles = found["peak_dilatancy_angle"]
     off = np.hypot(half, found["peak_dilatancy_angle_error"])
-    for end, sign in ((low, -1), (high, 1)):
-        expected, _ = shear_strength(found["nominal_pressure"], 30 + angles + sign * off)
+    for end, sign, factor in ((low, -1, 0.9), (high, 1, 1.9)):
+        by_angle, _ = shear_strength(found["nominal_pressure"], 30 + angles + sign * off)
+        whole = np.hypot(by_angle - value, (factor - 1) * value)
+        expected = within_largest_angle(np.maximum(value + sign * whole, 0), found)
         np.testing.assert_allclose(end, expected)
 
 

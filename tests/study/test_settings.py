@@ -53,7 +53,7 @@ def test_a_rule_states_the_settings_that_the_function_of_its_script_takes(functi
 
 def test_a_section_holds_what_its_class_names_and_no_more():
     read = settings.read(settings.StrengthSettings, asdict(made_settings()))
-    assert [field.name for field in fields(read)] == ["material", "surface_range"]
+    assert [field.name for field in fields(read)] == ["material", "surface_range", "block_lengths"]
     assert set(asdict(read.material)) == {one.name for one in fields(settings.Material)}
 
 

@@ -211,11 +211,10 @@ def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
             continue
         for end, factor in zip(("low", "high"), FRICTION_FACTORS[source], strict=True):
             value = strength[name]
-            own = xr.zeros_like(value)
+            own = strength.get(f"{name}_error", xr.zeros_like(value))
             if f"{name}_{end}" in strength:
-                own = strength[f"{name}_{end}"] - value
-            elif f"{name}_error" in strength:
-                own = strength[f"{name}_error"]
+                # Missing where nothing shows it: a scan may have no other windows.
+                own = (strength[f"{name}_{end}"] - value).fillna(own)
             half = np.hypot(own, (factor - 1) * value)
             words = f"{end} end of it at 95 %, with phi_b as {source}"
             limit = value + half if end == "high" else (value - half).clip(0)

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS, fit_line
+from ..core.fitting import MIN_POINTS
 from ..core.intervals import mean_difference
 from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
 from ..core.text import compact, loads_of, number
@@ -170,38 +170,6 @@ def _measured_slopes(joint: Joint) -> str:
 def _known_loads(estimate: Estimate, pressures: np.ndarray) -> list[tuple[Estimate, float]]:
     """Estimates and nominal pressures, MPa, of the loads that have one."""
     return [(estimate[i], pressures[i]) for i in np.flatnonzero(estimate.known)]
-
-
-def sigma_star_depends_on_load(joint: Joint) -> Finding:
-    """Exponent m of sigma* ~ F^m, sigma* = F / b^Delta_sigma with the Delta_sigma of each load.
-
-    Delta_sigma is that by boxes. In units of mm this is the nominal pressure of a joint of b = 1
-    mm, the intercept of eq. 6. The claim holds where the interval of m lies above the margin.
-    """
-    name = "sigma_star_depends_on_load"
-    states = joint.states("scaling")
-    star = states["eq6_sigma_star"].sel(estimator="box").values
-    known = star > 0
-    m = fit_line(np.log(joint.forces[known]), np.log(star[known])).slope
-    if not np.isfinite(m.width):
-        return Finding(UNDETERMINED, "too few loads have a dimension")
-    pressures = joint.forces[known] / joint.area
-    return Finding(
-        beyond_margin(m, all_claims()[name].margin, rising=True),
-        f"sigma* ~ F^m, m = {number(m)}",
-        f"{_between(pressures)}; {margin_words(name)}",
-        explanation=_at_one_dimension(joint),
-    )
-
-
-def _at_one_dimension(joint: Joint) -> str:
-    """Exponent of F/A_r over F, which sigma* has at one Delta_sigma, in words."""
-    law = joint.reported.at_offset(joint.along("area"))
-    exponent = Estimate.read(law, "corrected_exponent")
-    if not exponent.known:
-        return ""
-    m = exponent.mapped(lambda value: 1 - value, falling=True)
-    return f"at one Delta_sigma it goes as F/A_r, with m = {number(m)}"
 
 
 @of_the_area
