@@ -36,8 +36,8 @@ from fractalcontact.joint.jrc import profile_roughness
 from fractalcontact.laws.closure import closure_curves
 from fractalcontact.laws.seated_laws import at_reference_pressures
 from fractalcontact.report.published import read, row_of
+from fractalcontact.stages.closure_and_box_counts import reported_budget
 from fractalcontact.stages.specimen import specimen_of_files
-from fractalcontact.stages.states import reported_budget
 from fractalcontact.states.loading import JointLoading, Variant
 from fractalcontact.states.separation import prefractal_openings
 from fractalcontact.states.state_scalars import aperture

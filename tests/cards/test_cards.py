@@ -163,7 +163,8 @@ def test_a_card_is_as_trusted_as_its_worst_light(cards):
         assert card["trust"]["word"] == words[worst]
         deciding = {light["key"]: light for light in card["lights"] if light["word"] == worst}
         cause = next(key for key in ("faces", "scan", "model", "nodes", "grid") if key in deciding)
-        assert card["trust"]["help"] == deciding[cause]["help"]
+        _, _, advice = card["trust"]["help"].rpartition("times the strength); ")
+        assert advice == deciding[cause]["help"]
         assert card["trust"]["reason"].startswith(deciding[cause]["title"])
 
 
@@ -336,8 +337,9 @@ def test_a_card_says_what_lies_beyond_its_window_and_how_phi_b_is_known(cards):
         strength = card["entries"]["barton_strength"]
         for row in strength.get("values", ()):
             if assumed and "value" in row:
-                assert row["low"] == pytest.approx(0.9 * row["value"], rel=1e-4)
-                assert row["value"] <= row["high"] <= 1.9 * row["value"] * (1 + 1e-4)
+                # The interval holds phi_b, 0.9 to 1.9 times, and the profiles of the face.
+                assert row["low"] <= 0.9 * row["value"] * (1 + 1e-4)
+                assert row["value"] <= row["high"]
 
 
 def test_methods_say_what_was_read_of_the_scans(cards):
@@ -367,4 +369,5 @@ def test_methods_state_registration_and_the_reason_of_the_hardness():
     for hardness, reason in ((60.0, "the joint wall strength"), (90.0, "stated for this joint")):
         entries = stated | {"hardness": {"value": hardness}}
         card = {"entries": entries, "model": "crushing at H = 60 MPa"}
+        card["boundary"] = BOUNDARIES["free"]
         assert f"bounded by the hardness, 60 MPa, {reason}." in _contact(card)

@@ -56,7 +56,10 @@ def test_whatever_is_missing_has_its_reason_and_nothing_else_has_one(curves):
 
 
 def test_a_stiffness_beside_yielded_nodes_is_that_of_its_closure_curve(curves):
-    """It lies about the secants to the states beside it, and few states have none."""
+    """It lies about the secants to the states beside it, and half of the states have one.
+
+    The others have under 30 free nodes.
+    """
     every = curves[["closure", "stiffness"]].sel(resolution=1)
     every = every.transpose("direction", "offset", "normal_force")
     secants = np.diff(every["normal_force"].values) / np.diff(every["closure"].values)
@@ -65,7 +68,7 @@ def test_a_stiffness_beside_yielded_nodes_is_that_of_its_closure_curve(curves):
     stiffness = every["stiffness"].values[..., 1:-1]
     known = np.isfinite(stiffness)
     assert ((low < stiffness) & (stiffness < high))[known].all()
-    assert 0.6 < known.mean() < 1
+    assert 0.4 < known.mean() < 1
 
 
 def test_the_scatter_of_a_secant_is_no_error_of_the_solver(atlas, curves):

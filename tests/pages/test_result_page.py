@@ -47,7 +47,7 @@ from fractalcontact.pages.matrix import (
     of_study,
 )
 from fractalcontact.pages.summary import sheet_of
-from fractalcontact.report.published import BY_SCAN, Number, read_at
+from fractalcontact.report.published import BY_SCAN, Number, read_at, row_of
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -537,13 +537,13 @@ def test_one_face_has_an_assumed_offset_and_the_range_over_others(atlas):
     gaps = pair.reported.curves(pair["closure"])["mean_gap"].sel(normal_force=pair.reported.force)
     others = gaps.where((gaps["offset"] > 0) & (gaps["offset"] != pair.offset), drop=True)
     assert others.size
-    words = first_screen._Block(one, False)._at_offsets("mean_gap", 1.0, " mm")
+    words = first_screen._Block(one, False)._at_offsets(row_of("mean_gap"), 1.0, " mm")
     for end in (others.min(), others.max()):
         assert short(float(end)) in words
     assert words.endswith(" mm)")
     # Nothing is assumed of a pair, nor of a face that the study generates.
-    assert first_screen._Block(pair, False)._at_offsets("mean_gap", 1.0, " mm") == ""
-    assert first_screen._Block(one, True)._at_offsets("mean_gap", 1.0, " mm") == ""
+    assert first_screen._Block(pair, False)._at_offsets(row_of("mean_gap"), 1.0, " mm") == ""
+    assert first_screen._Block(one, True)._at_offsets(row_of("mean_gap"), 1.0, " mm") == ""
     closure = one["closure"].assign(reported_offset=float(others["offset"][0]))
     slid = replace(one, stages={**one.stages, "closure": closure})
     assert first_screen.offset_words(slid).startswith("assumed offset ")
@@ -556,6 +556,7 @@ def test_the_strength_is_the_range_of_its_rules(facts_with):
     fact = facts_with(**rules)[-1]
     assert fact.words == "18.9 to 45.5 MPa"
     assert fact.notes == [
+        "phi_b = 30° assumed",
         "range of 3 rules:",
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
         "no value by Barton and Bandis: JRC_n is above 20",
@@ -633,7 +634,8 @@ def test_the_trust_names_the_cause_before_its_symptoms():
 def test_an_error_larger_than_its_number_leaves_it_unknown(facts_with, half, synthetic, words):
     number = of(0.434, 0.431, 0.436, population=half)
     note = facts_with(synthetic, mean_gap=number)[2].notes[0]
-    assert note.removeprefix("[0.431,\u00a00.436] this surface") == words
+    holds = "this surface" if synthetic else "of these heights as gridded"
+    assert note.removeprefix(f"[0.431,\u00a00.436] {holds}") == words
 
 
 def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(

@@ -422,7 +422,7 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
     joint = xr.Dataset({"offset_cells": cells}, {"contact_direction": ["W"]})
     elastic = {"name": "rock", "modulus": 9600.0, "poisson": 0.2, "e_star": 1e4, "hardness": np.inf}
     material = Material(**vars(ROCK), **elastic)
-    strength = joint_strength(dilatancy, joint, rock, StrengthSettings(material, None))
+    strength = joint_strength(dilatancy, joint, rock, StrengthSettings(material, None, ()))
     strength = strength.sel(contact_direction="W")
     one = laws.sel(part=1)
     np.testing.assert_allclose(one["peak_strength"], strength["peak_strength"])

@@ -45,6 +45,13 @@ def test_the_sidecar_of_the_document_is_read(tmp_path):
     assert list(study.scans) == ["granite"]
 
 
+def test_the_test_of_the_first_hour_is_read(tmp_path):
+    (block,) = (one for one in blocks(ROOT / "docs/first_hour.md") if "measured:" in one.text)
+    study = study_in(tmp_path, yaml.safe_load(block.text), ("granite_load.csv",))
+    (test,) = study.settings["granite"].measured
+    assert test.calibrate == "hardness"
+
+
 def test_a_study_states_them_too(tmp_path):
     study = study_in(tmp_path, {}, specimens={"granite": {"measured": {"closure": TEST}}})
     assert study.settings["granite"].measured[0].file == str(tmp_path / "load.csv")

@@ -83,6 +83,7 @@ NOT_RUN = {
     ): "the study of make new: tests/commands/test_new_study.py",
     ("docs/gallery.md", ".venv/bin/python docs/gallery/"): "scripts: run by tests of the gallery",
     ("docs/size_effect.md", "make STUDY=config/size_effect.yaml"): HOURS,
+    ("docs/first_hour.md", "measured:"): "read in tests/study/test_laboratory_tests.py",
     ("docs/laboratory.md", "# scans/granite.yaml"): "read in tests/study/test_laboratory_tests.py",
     ("docs/verification.md", "make grid-table"): BY_CI,
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",

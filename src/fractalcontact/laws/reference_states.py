@@ -46,7 +46,7 @@ def solve_reference_stiffness(
     """
     (cells,), (offset,) = loading.cells, loading.offsets
     factor = int(curves["resolution"].min())
-    nearest = curves["offset"].sel(offset=offset, method="nearest").item()
+    nearest = states_at(curves["offset"], offset=offset).item()
     place = {"direction": loading.direction, "offset": nearest, "resolution": factor}
     curve = states_at(curves, **place)
     curve = curve.isel(normal_force=curve["resolved"].values)

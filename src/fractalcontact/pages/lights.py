@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ..core.limits import CORRECTED_NODES, FRICTION_FACTORS, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
-from ..core.text import compact, number, with_unit
+from ..core.text import compact, number, short, with_unit
 from ..core.validity import SLOPE, Validity
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_JUDGED, POOR, STRENGTH, USUAL
 
@@ -211,7 +211,6 @@ def trust_in(subject: Subject) -> Trust:
     if subject.direction == "none" or not (is_stated and is_assumed):
         return trust
     low, high = FRICTION_FACTORS["assumed"]
-    measure = (
-        f"measure phi_b on flat faces (assumed: tests had {low:g} to {high:g} times the strength)"
-    )
+    tests = f"tests had {short(low)} to {short(high)} times the strength"
+    measure = f"measure phi_b on flat faces (assumed: {tests})"
     return trust._replace(help="; ".join(filter(None, (measure, trust.help))))

@@ -8,7 +8,7 @@ import xarray as xr
 
 from ..core.directions import APERTURE
 from ..core.limits import STEEP_TILT
-from ..core.text import length_words
+from ..core.text import length_words, short
 from ..roughness.quality_words import overlap_words
 from ..scan.draft import OPENING
 
@@ -28,7 +28,7 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
     if attrs.get("outlier_count") and attrs.get("outliers") == "keep":
         warnings.append(outlier_words(specimen))
     if attrs["tilt_degrees"] > STEEP_TILT:
-        warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+        warnings.append(f"tilted by {short(attrs['tilt_degrees'])} degrees; heights stay vertical")
     warnings += filter(None, (_same_file_words(specimen), _moved_words(specimen)))
     name = str(attrs.get("specimen", attrs.get("name", "")))
     if attrs["opposite"] != APERTURE and _NO_FACE.search(name):
@@ -69,7 +69,7 @@ def _moved_words(specimen):
     if shift <= MAX_ERRORS * error:
         return ""
     return (
-        f"the faces fit as scanned (correlation {motion['correlation_before']:.3f}), and "
+        f"the faces fit as scanned (correlation {short(motion['correlation_before'])}), and "
         f"registration moves the upper one by {length_words(shift)}, with an error of "
         f"{length_words(error)}: write 'registration: none' if the files share one frame"
     )
@@ -109,8 +109,6 @@ def gap_words(specimen: xr.Dataset) -> str:
     if motion["applied"]:
         before = motion["gap_sd_before_mm"]
         spread = "unknown" if before is None else length_words(before)
-        words += (
-            f", shift {motion['shift_x_mm']:.3g}, {motion['shift_y_mm']:.3g} mm (x, y), sd before "
-            f"{spread}"
-        )
+        shift = ", ".join(short(motion[f"shift_{axis}_mm"]) for axis in "xy")
+        words += f", shift {shift} mm (x, y), sd before {spread}"
     return words

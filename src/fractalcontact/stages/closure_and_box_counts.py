@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..core.datasets import titled
 from ..core.labels import cf_attrs
-from ..core.reported import Reported
+from ..core.reported import Reported, states_at
 from ..core.settings import Solver, StateSettings
 from ..core.tolerance import ACCURACY
 from ..core.units import share_of
@@ -207,7 +207,7 @@ def _of_sampling(
     clusters = domains["clusters"].sel(resolution=domains["resolution"].min(), drop=True)
     clusters = clusters.rename(direction="contact_direction")
     (offset,) = loading.offsets
-    composite = composites.sel(offset=offset, method="nearest").values
+    composite = states_at(composites, offset=offset).values
     try:
         amplitude = amplitude_error(composite, tuple(loading.spacing))
     except ValueError:  # flush faces have no waves

@@ -219,7 +219,7 @@ def elimination_finds_the_set(joint: Joint) -> Finding:
     return Finding(
         share(right, int(tried.sum())),
         f"elimination ends on the contact set at {right or 'none'} of {tried.sum()} closures, "
-        f"after up to {steps[tried].max():.0f} systems",
+        f"after up to {number(steps[tried].max(), 0)} systems",
         f"{int(test['elimination_side'])} nodes along a side",
         explanation="with Love's kernel no topography defeats elimination; with the paper's plate "
         "read as a rigid square one can be constructed that does",
