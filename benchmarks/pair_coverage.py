@@ -33,13 +33,13 @@ from fractalcontact.error_budget.closure_constants import seated_constants
 from fractalcontact.error_budget.other_windows import whole_composite, window_places
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.joint.jrc import profile_roughness
+from fractalcontact.joint.openings import prefractal_openings
 from fractalcontact.laws.closure import closure_curves
 from fractalcontact.laws.seated_laws import at_reference_pressures
 from fractalcontact.report.published import read, row_of
 from fractalcontact.stages.closure_and_box_counts import reported_budget
 from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.states.loading import JointLoading, Variant
-from fractalcontact.states.separation import prefractal_openings
 from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import combine, contact_domains, forces_of, with_pressure
 from fractalcontact.states.subgrid import SOUND, closure_from, composite_quantities
