@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import tiny_pairs
 from samples import scan_of
 
 from fractalcontact.core.window import window_slices
@@ -17,19 +18,13 @@ from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 
-STUDY = {
-    "study": "tiny",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
-    "defaults": {
-        "material": "rock",
-        "contact_directions": ["E"],
-        "offsets": ["0 mm", "1 mm"],
-        "loads": ["0.1 MPa", "5 MPa", "25 MPa"],
-        "resolutions": [1, 2],
-        "window": "16 mm",
-        "map_offset": "0 mm",
-    },
+DEFAULTS = tiny_pairs.STUDY["defaults"] | {
+    "offsets": ["0 mm", "1 mm"],
+    "loads": ["0.1 MPa", "5 MPa", "25 MPa"],
+    "resolutions": [1, 2],
+    "map_offset": "0 mm",
 }
+STUDY = tiny_pairs.STUDY | {"defaults": DEFAULTS}
 SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
 SPIKE = (21, 20)  # within the window, and away from its neighbours one cell East
 

@@ -52,9 +52,8 @@ def job(snakemake):
         if _told_to_stop:  # the work may have taken the interrupt for an error of its own
             raise KeyboardInterrupt
         checksums.record(results, _below(results, snakemake.output))
-        signal.signal(
-            signal.SIGTERM, signal.SIG_IGN
-        )  # the work is done: the job ends at once anyway
+        # The work is done, and the job ends at once anyway.
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
         log.info(
             "%s %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, "
             "memory %.0f MB",

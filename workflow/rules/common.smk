@@ -144,14 +144,14 @@ def window_nodes(name):
     return estimates.nodes_of_window(SETTINGS[name], spacing, face_nodes(name))
 
 
-def most_offsets(name):
+def max_offsets(name):
     """Upper bound of the shear offsets of a specimen; "auto" settles their number only later."""
     return len(SETTINGS[name].offsets or range(AUTOMATIC_OFFSETS + 1))
 
 
 def kept_states(name):
     """Contact states of a specimen that are kept at the finest resolution."""
-    return estimates.states_of(SETTINGS[name], most_offsets(name))
+    return estimates.states_of(SETTINGS[name], max_offsets(name))
 
 
 def doubled(amount):

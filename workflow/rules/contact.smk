@@ -15,7 +15,7 @@ def blocks_of(name):
     return {
         "direction": grain("directions", len(stated.contact_directions)),
         # The scan may turn out to have fewer offsets; a job without any writes an empty part.
-        "offset": grain("offsets", most_offsets(name)),
+        "offset": grain("offsets", max_offsets(name)),
         "resolution": grain("resolutions", len(stated.resolutions)),
     }
 

@@ -93,7 +93,7 @@ def window_words(subject: Subject) -> str:
 
 
 def boundary_of(subject: Subject) -> str:
-    """What lies beyond the edges of the window, in words."""
+    """Boundary of the window in words: what lies beyond its edges."""
     return BOUNDARIES[subject.settings.get("boundary", "free")]
 
 

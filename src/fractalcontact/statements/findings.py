@@ -200,6 +200,16 @@ def beyond_margin(estimate: Estimate, margin: float, *, rising: bool) -> str:
     return UNDETERMINED
 
 
+def trend_over_sizes(
+    name: str, exponent: Estimate, numbers: str, source: str, *, rising: bool
+) -> Finding:
+    """Finding on an exponent against the size of sub-windows; ``source`` says of which states."""
+    if not exponent.known:
+        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
+    verdict = beyond_margin(exponent, all_claims()[name].margin, rising=rising)
+    return Finding(verdict, numbers, f"{source}; {margin_words(name)}")
+
+
 def within_margin(difference: Estimate, margin: float) -> str:
     """Verdict on a claim that there is no difference.
 

@@ -18,6 +18,7 @@ from .findings import (
     margin_words,
     of_the_area,
     share,
+    trend_over_sizes,
     within_margin,
 )
 from .local_slopes import one_slope
@@ -346,15 +347,9 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
 
     The claim holds where the interval lies below minus the margin, and fails where it lies above.
     """
-    name = "larger_domains_are_less_dense"
-    exponent = evidence.size_exponent("area_exponent")
-    if not exponent.known:
-        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
-    return Finding(
-        beyond_margin(exponent, all_claims()[name].margin, rising=False),
-        f"x = {number(exponent)}",
-        f"A_r/A_0 ~ b^x {evidence.reference}; {margin_words(name)}",
-    )
+    name, exponent = "larger_domains_are_less_dense", evidence.size_exponent("area_exponent")
+    source = f"A_r/A_0 ~ b^x {evidence.reference}"
+    return trend_over_sizes(name, exponent, f"x = {number(exponent)}", source, rising=False)
 
 
 def strength_falls_with_size(joint: Joint) -> Finding:

@@ -16,6 +16,7 @@ from .findings import (
     beyond_margin,
     difference_of,
     margin_words,
+    trend_over_sizes,
     within_margin,
 )
 
@@ -68,15 +69,10 @@ def voids_grow_with_size(joint: Joint, evidence: Evidence) -> Finding:
     The void is the largest disc about a node of the window that holds no contact. The claim holds
     where the interval of the exponent lies above the margin.
     """
-    name = "voids_grow_with_size"
     exponent = evidence.size_exponent("void_exponent")
-    if not exponent.known:
-        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
-    return Finding(
-        beyond_margin(exponent, all_claims()[name].margin, rising=True),
-        f"diameter of the largest void ~ b^x, x = {number(exponent)}",
-        f"{evidence.reference}; {margin_words(name)}",
-    )
+    numbers = f"diameter of the largest void ~ b^x, x = {number(exponent)}"
+    source = evidence.reference
+    return trend_over_sizes("voids_grow_with_size", exponent, numbers, source, rising=True)
 
 
 def friction_angle_falls_with_size(joint: Joint) -> Finding:

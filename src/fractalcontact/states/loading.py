@@ -140,7 +140,7 @@ class JointLoading(Generic[P]):
         return suspect_nodes(self.specimen, self.direction, cells)
 
     def variant(self, name: str, cells: int) -> Variant:
-        """That topography with its suspicious nodes and a name."""
+        """Composite topography at an offset of ``cells``, its suspicious nodes, and a name."""
         return Variant(name, self.composite(cells), self.suspect_nodes(cells))
 
     def contact_dips(self, cells: int, factor: int) -> list[np.ndarray]:

@@ -1,6 +1,6 @@
 """Contact of periodic and mirrored windows: exact solutions, dense programmes, hostile scenes.
 
-``make problems PROBLEMS=300`` tries more of the last, up to 200 nodes a side.
+``make problems PROBLEMS=300`` tries more of the last, up to 200 nodes per side.
 """
 
 import os

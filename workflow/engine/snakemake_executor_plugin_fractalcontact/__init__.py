@@ -101,9 +101,9 @@ class Executor(RealExecutor):
         return subprocess.run(self.format_job_exec(job), shell=True).returncode
 
     def _report(self, info, ended):
-        # At each end of a job the scheduler looks for new jobs, and once more a second later, from
-        # then on every second as long as jobs wait: so 80 ended jobs had it look 80 times a second,
-        # which took a tenth of the paper study. This end makes it look anyway.
+        # Snakemake looks for new jobs whenever a job ends. Each look starts a timer that makes it
+        # look again a second later, as long as jobs wait. After 80 ended jobs it would look 80
+        # times a second, and take a tenth of the paper study. The look at this end is enough.
         for thread in threading.enumerate():
             if isinstance(thread, threading.Timer):
                 thread.cancel()
