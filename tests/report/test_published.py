@@ -231,6 +231,24 @@ def test_a_lacking_stage_and_a_flag_without_a_value_have_reasons_of_their_own():
     assert [one.missing for one in found] == ["too few", "none", ""]
 
 
+def test_a_stage_that_leaves_loads_out_has_no_value_there():
+    """Branches have no load that fewer than ten nodes carry; tables go through all loads."""
+    known = subject()
+    words = {"units": "1"}
+    data = {
+        "width": ("normal_force", [2.0, 3.0], {"units": "mm"}),
+        "why": ("normal_force", ["", "too full"], words),
+        "nominal_pressure": ("normal_force", [20.0, 30.0], {"units": "MPa"}),
+    }
+    branches = xr.Dataset(data, coords={"normal_force": FORCES[1:]})
+    both = Subject({**known.stages, "branches": branches}, known.settings)
+    of = Row("width", "width", "branches/width", "mm", reason="branches/why", missing="no branch")
+    found = read(of, both)
+    assert [one.missing for one in found] == ["no branch", "", ""]
+    assert [one.value for one in found[1:]] == [2.0, 3.0]
+    assert [str(one.estimate.reason) for one in found] == ["", "", "too full"]
+
+
 def test_all_states_of_a_quantity_are_read_where_its_row_says_so():
     known = subject()
     coords = {"contact_direction": ["W", "E"], "offset": [0.1]}
