@@ -1,6 +1,9 @@
 """Dilatancy of other windows and readings: what is alike agrees, and what differs shows."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 from made_stages import scan
 
 from fractalcontact.error_budget.slid_variants import OWN, QUARTER, READ, WINDOW, slid_variants
@@ -26,8 +29,8 @@ STUDY = {
 SOLVER = solver_settings({}, "slid")
 
 
-def joint_of(heights, name="rock"):
-    settings = resolve_settings(STUDY, name, {}, "slid")
+def joint_of(heights, name="rock", boundary="free"):
+    settings = replace(resolve_settings(STUDY, name, {}, "slid"), boundary=boundary)
     specimen = make_specimen(scan(heights, 0.1), name=name, **window_arguments(settings))
     joint = describe_joint(specimen, settings)
     return JointLoading.of_joint(specimen, joint, "E", settings, SOLVER), joint
@@ -37,8 +40,9 @@ def rough(cells=80):
     return self_affine((cells, cells), 0.1, 0.8, rms=0.1, seed=5, roll_off=1.5)
 
 
-def test_this_window_has_the_dilatancy_of_the_stage():
-    loading, joint = joint_of(rough())
+@pytest.mark.parametrize("boundary", ["free", "mirrored"])
+def test_this_window_has_the_dilatancy_of_the_stage(boundary):
+    loading, joint = joint_of(rough(), boundary=boundary)
     force = loading.forces(loading.settings.loads)[1]
     found = slid_variants(loading, force)
     kinds, curves = found["variant_kind"][1], found["variant_dilatancy"][1]

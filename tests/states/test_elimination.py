@@ -1,11 +1,15 @@
 """Elimination alone, on topographies where it is right and where it is wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import tiny_pairs
+import xarray as xr
 from rough_surfaces import self_affine
 
 from contactlab.accuracy.elimination import counter_example
-from fractalcontact.states.elimination import _eliminated
+from fractalcontact.states.elimination import _eliminated, elimination_alone
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 
@@ -27,6 +31,16 @@ def test_elimination_drops_a_node_in_contact_where_the_inverse_has_a_positive_en
     heights = counter_example(space)
     *_, wrong = _eliminated(1.0 - heights, space, 1.0)
     assert wrong > 0
+
+
+def test_the_set_of_a_mirrored_joint_is_that_of_its_window_alone():
+    joint = tiny_pairs.loading_of(tiny_pairs.pair())
+    free, mirrored = (
+        elimination_alone(replace(joint, settings=replace(joint.settings, boundary=boundary)))
+        for boundary in ("free", "mirrored")
+    )
+    xr.testing.assert_identical(free, mirrored)
+    assert (free["elimination_steps"] > 1).any()
 
 
 def test_flush_faces_have_no_answer():

@@ -47,17 +47,14 @@ def closure_constants(
     interval is unbounded.
     """
     pressure = curve["nominal_pressure"].values
+    of_readings, of_motions = (
+        _constants(variants, pressure, seating_pressure) for variants in (readings, motions)
+    )
     apart = {
-        name: np.fmax(_farthest(of_readings, own), _spread(of_motions))
-        for name, own, of_readings, of_motions in (
-            (
-                name,
-                float(curve[variable]),
-                _constants(readings, pressure, seating_pressure)[name][1:],
-                _constants(motions, pressure, seating_pressure)[name],
-            )
-            for name, (variable, *_) in CONSTANTS.items()
+        name: np.fmax(
+            _farthest(of_readings[name][1:], float(curve[variable])), _spread(of_motions[name])
         )
+        for name, (variable, *_) in CONSTANTS.items()
     }
     variables: dict[str, tuple] = {}
     for name, (variable, unit, words) in CONSTANTS.items():

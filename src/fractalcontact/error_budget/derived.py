@@ -66,9 +66,9 @@ def with_derived(
     95 %, ``of_scan`` the error of two scans, both in mm. NaN where an error is not known.
 
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
-    which is exact: its error is the root sum of squares of theirs, to which that of two scans is
-    added, which both separations share and which is its own. First touch, which decides the error
-    of the closure from there, is in neither. At the seat it is 0 by definition. What moves the mean
+    which is exact: its error is the root sum of squares of theirs, plus the error of two scans,
+    which is computed of the closure from the seat itself. First touch, which decides the error of
+    the closure from there, is in neither. At the seat it is 0 by definition. What moves the mean
     planes apart widens the gap by as much. The stiffness at a pressure has the relative error of
     the neighbouring states, and none beyond states whose error is known.
     """

@@ -77,7 +77,7 @@ def _solved(
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray], np.ndarray]:
     """Values (quantity, normal_force) at a hardness, mean gaps, T by way, reference stiffness.
 
-    NaN if it is infinite.
+    All of them are NaN where the hardness is infinite.
     """
     values = curve.over_quantities()
     gaps = np.full(len(curve.forces), np.nan)

@@ -15,7 +15,7 @@ from ..joint.joint import prefractal
 from ..laws.strength import OWN, QUARTER, READ, WINDOW
 from ..scan.other_readings import other_readings
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement
+from ..states.settlement import window_settlement
 from ..states.sweep import load_steps
 from .other_windows import MIN_EFFECTIVE, whole_composite, window_places
 
@@ -103,5 +103,5 @@ def _dilatancy(
         return 0.0
     where = f"specimen {loading.specimen.attrs['name']}, variants"
     (state,) = load_steps(composite, space, [force], loading.solving, where)
-    settlement = float(bulk_settlement(force, space.modulus, *sides))
+    settlement = float(window_settlement(space, force))
     return float(composite.max()) - mated - state.closure + settlement

@@ -144,7 +144,11 @@ _OF_INTERFACE = {
         "MPa/mm",
         "error of it on reloading by what lies beyond the edges of the window, half-width",
     ),
-    "reload_reason": ((), "1", "why there is no tangent stiffness on unloading and reloading"),
+    "reload_reason": (
+        (),
+        "1",
+        "why there is no stiffness on unloading and reloading at the reference pressures",
+    ),
 }
 #: Factor on the largest relative difference of the stiffness on reloading between a mirrored and a
 #: periodic window. With it the middle of a window of twice the side lies within the error
@@ -201,8 +205,10 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     apart = np.nan
     if data["yielded"].any() and not space.is_free:
         at = np.array(REFERENCE_PRESSURES)
-        at = at[np.isfinite(at_reference[-1]) & (at < pressure[-1])]
-        apart = _edge_error(composite, loaded[-1], at * loading.area, loading.solving, where)
+        at_each = np.isfinite(at_reference[-1]) & (at < pressure[-1])
+        # Without a bowl the stiffness of the interface is that of interface and blocks.
+        forces, own = at[at_each] * loading.area, at_reference[-1][at_each] * loading.area
+        apart = _edge_error(composite, loaded[-1], forces, own, loading.solving, where)
     why = KEPT_BOWL if keeps_bowl else ""
     if apart > MAX_EDGE_ERROR:
         why = DECIDED_BY_EDGES
@@ -259,28 +265,27 @@ def _edge_error(
     composite: np.ndarray,
     top: ContactState,
     forces: np.ndarray,
+    own: np.ndarray,
     solving: Mapping[str, Any],
     where: str,
 ) -> float:
     """Relative error of the stiffness on reloading by the edges of a mirrored or periodic window.
 
-    ``top`` is the state under the largest load, ``forces`` are those of the reference pressures, N.
-    The joint is loaded and unloaded with the other of both boundaries too.
+    ``top`` is the state under the largest load, ``forces`` are those of the reference pressures, N,
+    in ascending order, and ``own`` the stiffness there, N/mm. The joint is loaded and unloaded
+    again with the other of both boundaries.
     """
     space = top.space
     if not len(forces):
         return np.nan
     boundary = PERIODIC if space.boundary == MIRRORED else MIRRORED
     other = HalfSpace(space.shape, space.spacing, space.modulus, boundary=boundary)
-    falling = np.sort(forces)[::-1]
+    falling = forces[::-1].tolist()
     try:
         start = solve_contact(composite, other, force=top.force, start=top, **solving)
-        of_both = [
-            load_path(composite, state.space, forces=falling.tolist(), loaded=state, **solving)
-            for state in (top, start)
-        ]
+        path = load_path(composite, other, forces=falling, loaded=start, **solving)
     except NotConverged as error:
         error.add_note(f"{where}, {boundary} window")
         raise
-    stiffness = np.array([[state.contact.stiffness for state in path] for path in of_both])
-    return float(EDGE_FACTOR * np.abs(stiffness[1] / stiffness[0] - 1).max())
+    stiffness = np.array([state.contact.stiffness for state in path])[::-1]
+    return float(EDGE_FACTOR * np.abs(stiffness / own - 1).max())

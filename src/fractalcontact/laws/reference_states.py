@@ -18,9 +18,10 @@ from ..core.limits import PRESSURE_ROUNDING, REFERENCE_PRESSURES, RESOLVED_NODES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
-from ..states.settlement import interface_stiffness, window_settlement
+from ..states.settlement import interface_closure, interface_stiffness, window_settlement
 from ..states.state_scalars import resolved_slope
-from .seated_laws import at_reference_pressures, curve_stiffness
+from .scan_errors import on_sound_cells
+from .seated_laws import NO_LOAD, at_reference_pressures, curve_stiffness
 
 
 def further_pressures(pressure: np.ndarray) -> np.ndarray:
@@ -49,7 +50,7 @@ def solve_reference_stiffness(
     nearest = states_at(curves["offset"], offset=offset).item()
     place = {"direction": loading.direction, "offset": nearest, "resolution": factor}
     curve = states_at(curves, **place)
-    curve = curve.isel(normal_force=curve["resolved"].values)
+    curve = curve.isel(normal_force=on_sound_cells(curve).values)
     pressure = curve["nominal_pressure"].values
     composite = prefractal(loading.composite(int(cells)), factor)
     if pressure.size < 2 or np.ptp(composite) == 0:
@@ -71,8 +72,12 @@ def solve_reference_stiffness(
         stiffness = np.concatenate([stiffness, [k for k, _ in found]])[order]
         closure = np.concatenate([closure, [w for _, w in found]])[order]
     stiffness = with_curve_stiffness(pressure, stiffness, closure)
-    values = curves["reference_stiffness"]
-    values.loc[place] = at_reference_pressures(pressure, stiffness)
+    at_reference = at_reference_pressures(pressure, stiffness)
+    curves["reference_stiffness"].loc[place] = at_reference
+    reasons = curves["reference_stiffness_reason"]
+    stated = reasons.loc[place].values
+    stated = np.where(stated == "", NO_LOAD, stated)
+    reasons.loc[place] = np.where(np.isfinite(at_reference), "", stated)
 
 
 def with_curve_stiffness(
@@ -138,7 +143,7 @@ def _solved(
 def _of_interface(state: ContactState, area: float) -> tuple[float, float]:
     """Stiffness, MPa/mm, and closure, mm, of the interface in a state; A_0 in mm2."""
     settlement = float(window_settlement(state.space, state.force))
-    closure = state.closure - settlement
+    closure = float(interface_closure(state.closure, settlement))
     if np.count_nonzero(state.in_contact) < RESOLVED_NODES:
         return np.nan, closure
     compliance = area / resolved_slope(state).value

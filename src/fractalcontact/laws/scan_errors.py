@@ -17,7 +17,7 @@ def on_sound_cells(curves: xr.Dataset) -> xr.DataArray:
 
 
 def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
-    """Curves whose fits rest on errors of the scans.
+    """Curves most of whose states rest on errors of the scans.
 
     Suspicious cells carry more than half of the load in half or more of the states that have the
     nodes to be fitted; of all states where none has.
@@ -34,7 +34,7 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
 
     It names, for the reported direction and resolution, the offsets at which suspicious cells carry
     more than half of the reference load, and those at which they do so in half of the states of ten
-    nodes, which no fit then takes.
+    nodes or more; no fit takes such a state.
     """
     finest = reported.curves(curves)
     mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)

@@ -211,12 +211,13 @@ def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
             continue
         for end, factor in zip(("low", "high"), FRICTION_FACTORS[source], strict=True):
             value = strength[name]
-            own = strength.get(f"{name}_error", xr.zeros_like(value))
-            if f"{name}_{end}" in strength:
-                # Missing where nothing shows it: a scan may have no other windows.
-                own = (strength[f"{name}_{end}"] - value).fillna(own)
+            own = strength[f"{name}_{end}"] - value
+            if f"{name}_error" in strength:
+                # A scan may have no other windows and readings: then the solver's error is left.
+                own = own.fillna(strength[f"{name}_error"])
             half = np.hypot(own, (factor - 1) * value)
-            words = f"{end} end of it at 95 %, with phi_b as {source}"
+            title = value.attrs["long_name"]
+            words = f"{end} end of {title}: own error at 95 %, phi_b {source}"
             limit = value + half if end == "high" else (value - half).clip(0)
             # No rule gives more than that angle.
             steepest = np.tan(np.radians(LARGEST_FRICTION_ANGLE)) * strength["nominal_pressure"]

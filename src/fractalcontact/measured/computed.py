@@ -16,6 +16,7 @@ from ..core.settings import MeasuredSettings, MeasuredTest
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
 from ..states.settlement import window_settlement
+from ..states.state_scalars import aperture
 from .curve import Curve
 
 #: Relative error of a modulus as laboratories state it.
@@ -118,11 +119,6 @@ class Joint:
 
     def solved(self, test: MeasuredTest, lightest: float, largest: float, hardness: float) -> Curve:
         """Interface closure on loading up to a pressure or, after it, on unloading from there."""
-        if largest >= CARRIED * hardness:
-            raise InputError(
-                f"{test.file}: the joint has carried {largest:.3g} MPa, more than it can at a "
-                f"hardness of {hardness:.3g} MPa; state a larger one in the material"
-            )
         area = self.loading.area
         space = self.loading.half_space(self._composite.shape, self.factor)
         pressure = np.geomspace(lightest, largest, _STATES)
@@ -151,13 +147,18 @@ class Joint:
             order = order[::-1]
             path = np.concatenate([[largest], pressures[order]])
         states = self._path(test, path, self.hardness)[-len(pressures) :]
-        gaps = [np.where(state.contact.in_contact, 0.0, state.gap) for state in states]
+        gaps = [aperture(state.contact) for state in states]
         return [gaps[place] for place in np.argsort(order)]
 
     def _path(
         self, test: MeasuredTest, pressures: np.ndarray, hardness: float
     ) -> list[BranchState]:
-        """States under successive pressures, MPa."""
+        """States under successive pressures, MPa; refused if the joint cannot carry the largest."""
+        if (largest := pressures.max()) >= CARRIED * hardness:
+            raise InputError(
+                f"{test.file}: the joint has carried {largest:.3g} MPa, more than it can at a "
+                f"hardness of {hardness:.3g} MPa; state a larger one in the material"
+            )
         composite, forces = self._composite, (self.loading.area * pressures).tolist()
         space = self.loading.half_space(composite.shape, self.factor)
         try:

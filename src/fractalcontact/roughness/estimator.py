@@ -35,6 +35,8 @@ class Estimator(NamedTuple):
     """H that the slope of such a fit gives on average at each of `known_bias.HURST_GRID`, if the
     nodes are `known_bias.POINTS` or those of a `spectrum_model.BAND_LIMITED` surface."""
     nodes: str = POINTS
-    """Kind of nodes that errors are attributed to. Errors of measurement make short lags too rough,
-    as missing waves make them too smooth: of scans neither is taken off.
+    """What the nodes are taken for, `POINTS` or `BAND_LIMITED`.
+
+    Errors of measurement make short lags too rough, as missing waves make them too smooth: of scans
+    neither is taken off.
     """

@@ -14,10 +14,11 @@ MIN_CELLS = 16
 def divisions(shape: tuple[int, int]) -> tuple[int, ...]:
     """Divisions of a window along a side: :data:`PARTS`, or thirds and ninths of 3^n cells.
 
-    A surface built in thirds is cut through by any other division.
+    A surface built in thirds is cut through by any other division. Ninths need `MIN_CELLS` cells.
     """
     side = min(shape)
-    return (1, 3, 9) if side >= 81 and 3 ** round(np.log(side) / np.log(3)) == side else PARTS
+    is_of_thirds = 3 ** round(np.log(side) / np.log(3)) == side
+    return (1, 3, 9) if is_of_thirds and side >= 9 * MIN_CELLS else PARTS
 
 
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:

@@ -48,7 +48,7 @@ def joint_by_size(
 ) -> xr.Dataset:
     """Size laws of a joint: closure, roughness and strength of its sub-windows against b.
 
-    As :func:`size_laws`, with the JRC of the window and eq. 2 fitted over windows that look at the
+    As :func:`size_laws`, with the JRC of the face and eq. 2 fitted over windows that look at the
     waves of the lags, mm, stated for Delta_g or below a roll-off.
     """
     roughness, direction = np.nan, states["direction"].item()
@@ -69,7 +69,7 @@ def size_laws(
     """Means over the sub-windows of each size, and the powers of b they follow.
 
     ``states`` are those of :func:`size_effect.windows.window_states`, ``roughness`` is the JRC of
-    the window as used in Barton's law (``jrc_used`` of :func:`joint.jrc.profile_roughness`; NaN for
+    the face as used in Barton's law (``jrc_used`` of :func:`joint.jrc.profile_roughness`; NaN for
     a joint that does not slide), and ``dimension`` Delta_g of the face: eq. 2 expects H = 3 -
     Delta_g. The fits of sigma_z take sides b within ``fit_range``, mm, by default from
     `FIRST_FITTED_CELLS` cells to `LAST_FITTED_FRACTION` of the window.
@@ -117,16 +117,18 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
         usable = values.copy(data=of_usable_sizes(values.values, nodes.values, RESOLVED_NODES))
         add_size_exponents(result, exponent, usable, places, f"exponent of {words} against b")
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
-        add_mean(result, name, states[name], states[f"{name}_error"])
+        values, error, of_nodes = states[name], states[f"{name}_error"], nodes
+        if name == "corrected_area_share":
+            occupied = states["occupied"] != 0
+            values, error, of_nodes = (of.where(occupied) for of in (values, error, nodes))
+            of_nodes = of_nodes.transpose(*dims)
+        add_mean(result, name, values, error)
         if name in _OF_INTERFACE:
             # Contact is too full there to separate the interface from the bulk.
             below = result[name] < 0
             for kept in (*names_of(name), f"{name}_error"):
                 result[kept] = result[kept].where(~below)
-        values, of_nodes = states[name].transpose(*dims), nodes
-        if name == "corrected_area_share":
-            counts = states["occupied"].transpose(*dims) != 0
-            values, of_nodes = values.where(counts), nodes.where(counts)
+        values = values.transpose(*dims)
         values = values.copy(data=of_usable_sizes(values.values, of_nodes.values, fewest))
         add_size_exponents(result, exponent, values, places, words)
     add_fitted(result)

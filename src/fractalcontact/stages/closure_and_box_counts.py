@@ -131,11 +131,9 @@ def state_stages(
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
-    joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     if joint.slides:
         variants = slid_variants(joint, reported.force)
         stages["dilatancy"] = stages["dilatancy"].assign(variants)
-    loading = joint.at_map_offset()
     solve_reference_stiffness(loading, stages["closure"], mapped)
     budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)

@@ -34,7 +34,9 @@ _TABLE = {
 
 
 def elimination_alone(loading: JointLoading) -> xr.Dataset:
-    """Contact sets by elimination at the one offset of a loading, at three closures.
+    """Contact sets of a free window by elimination, at the one offset of a loading.
+
+    They are at three closures.
 
     Over (tentative,), the fraction of the nodes that interpenetrate before anything is dropped:
     ``elimination_steps`` and ``elimination_wrong``, on every k-th node of the window, at most
@@ -43,7 +45,9 @@ def elimination_alone(loading: JointLoading) -> xr.Dataset:
     composite = loading.composite(loading.cells.item())
     factor = -(-max(composite.shape) // MAX_SIDE)
     heights = composite[::factor, ::factor]
-    space = loading.half_space(heights.shape, factor)
+    # The paper's window stands alone, whatever the boundary of the joint.
+    spacing, e_star = tuple(loading.spacing * factor), loading.settings.material.e_star
+    space = HalfSpace(heights.shape, spacing, e_star, kernel=loading.solver.kernel)
     clearance = heights.max() - heights
     closures = np.quantile(clearance, TENTATIVE)
     rows = [_eliminated(clearance, space, float(closure)) for closure in closures]

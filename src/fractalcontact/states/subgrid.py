@@ -10,7 +10,7 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.determined import decided_by_scan
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
 from ..joint.joint import prefractal
 from ..joint.overlap import suspect_load_share
 from .loading import JointLoading, Variant
@@ -121,7 +121,7 @@ def composite_quantities(
 
 def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.ndarray:
     """Closures (variant, load) counted from the force of the seat, N; NaN without one and below."""
-    seats = np.flatnonzero(np.isclose(forces, seat, rtol=1e-6, atol=0))
+    seats = np.flatnonzero(np.isclose(forces, seat, rtol=PRESSURE_ROUNDING, atol=0))
     if not seats.size:
         return np.full(closure.shape, np.nan)
     seated = closure - closure[:, seats[:1]]
@@ -129,7 +129,7 @@ def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.nda
 
 
 def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
-    """True of a state that fits take, as :func:`joint.overlap.on_sound_cells` of stored ones."""
+    """True of a state that fits take, as :func:`laws.scan_errors.on_sound_cells` of stored ones."""
     enough = np.count_nonzero(state.in_contact) >= RESOLVED_NODES
     share = suspect_load_share(state.pressure, suspicious)
     return bool(enough and not decided_by_scan(share))

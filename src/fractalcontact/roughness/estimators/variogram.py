@@ -31,8 +31,9 @@ def _add_differences(heights, lag, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """Mean H of surfaces whose curve has this slope: levelling, roll-off and missing short waves
-    lower the curve.
+    """Mean H that the slope of such a fit gives, at each true H of `HURST_GRID`.
+
+    Levelling, roll-off and missing short waves lower the curve.
     """
     left = difference_fraction(fit.length / fit.roll_off, fit.shape)
     levelled = levelled_fraction(fit, levelled_slope())
