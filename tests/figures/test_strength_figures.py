@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from fractalcontact.core.estimate import names_of
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
 from fractalcontact.figures.kit.sizes import draw_over_size, plain_decades, roughness_words
+from fractalcontact.laws.strength import ABOVE_SCALE, OFF_LENGTHS
 
 DRAWN = [
     ("sliding", "strength"),
@@ -116,7 +117,11 @@ def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atla
 
 
 def test_both_figures_of_strength_word_the_roughness_alike(atlas):
-    other = changed(atlas, "strength/sliding", scaled_roughness=np.nan)
+    off = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
+    assert off["barton_scaled_reason"] == OFF_LENGTHS
+    assert "this length lies off his law of scale" in roughness_words(off)
+    beyond = {"scaled_roughness": np.nan, "barton_scaled_reason": ABOVE_SCALE}
+    other = changed(atlas, "strength/sliding", **beyond)
     other = changed(other, "windows/sliding", barton_roughness=np.nan)
     strength = other["strength/sliding"].to_dataset()
     words = roughness_words(strength.isel(contact_direction=0))

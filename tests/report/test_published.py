@@ -232,7 +232,7 @@ def test_a_lacking_stage_and_a_flag_without_a_value_have_reasons_of_their_own():
 
 
 def test_a_stage_that_leaves_loads_out_has_no_value_there():
-    """Branches have no load that fewer than ten nodes carry; tables go through all loads."""
+    """Branches end far above the seating pressure; tables go through all loads."""
     known = subject()
     words = {"units": "1"}
     data = {

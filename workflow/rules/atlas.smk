@@ -1,5 +1,5 @@
-# The atlas of the study: all results in one file; in a campaign, one row a specimen. The rule `figures`, in the
-# next file, makes the atlas of each specimen.
+# The atlas of the study: all results in one file; in a campaign, one row a specimen. The rule
+# `specimen_atlas`, in the next file, makes that of each specimen.
 
 #: Files that the rules above make of every specimen, whatever its kind, with {specimen} in their names.
 STAGE_PATTERNS = [
@@ -23,7 +23,7 @@ STAGE_FILES = [
 ]
 
 
-# Results of all stages, of contact maps and of experiments (in a campaign, the rows that `figures` wrote), and
+# Results of all stages, of contact maps and of experiments (in a campaign, the rows that `specimen_atlas` wrote), and
 # the verdicts on the paper's statements about several specimens.
 rule atlas:
     input:

@@ -69,8 +69,8 @@ PRIORITY = {
     "area_slope": -1,
     "estimator_bias": -1,
     # Figures are drawn after what the atlas of the study needs, else one core makes that atlas alone at the
-    # end. Figures of joints take longer and begin first. In a campaign `figures` makes the rows of the
-    # atlas, and is not put off.
+    # end. Figures of joints take longer and begin first. In a campaign the jobs of this
+    # priority make the rows of the atlas, and are not put off.
     "figures": 0 if CAMPAIGN else -2,
     "figures_against_plane": 0 if CAMPAIGN else -3,
     "explorer": -4,  # last: no job waits for it

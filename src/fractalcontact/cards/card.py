@@ -49,7 +49,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "entries": {row.name: entry_of(row, subject, model) for row in entries()},
         "errors": errors_of(subject),
         "lights": [asdict(light) for light in lights],
-        "trust": trust_in(subject)._asdict(),
+        "trust": trust_in(subject, is_synthetic(subject.name, study))._asdict(),
         "licence": LICENCE,
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),

@@ -129,7 +129,8 @@ def drafted_keys(lower: Path, upper: Path, stated: Mapping[str, Any]) -> dict[st
         for key, value in drafts["upper"].items()
         if value is not None and value != common[key]
     }
-    return {**common, **stated} | ({"upper": differing} if differing else {})
+    of_upper = differing | dict(stated.get("upper") or {})
+    return {**common, **stated} | ({"upper": of_upper} if of_upper else {})
 
 
 def _stated(scan: ScanFiles) -> dict[str, Any]:

@@ -93,3 +93,7 @@ CONDUCTANCE_EXPONENTS = (0.95, 1.0)
 PRESSURE_ROUNDING = 1e-9
 #: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
 HARDEST = 3.0
+
+#: Lengths of the shear tests that Barton's law of scale was made for, mm (Bandis, Lumsden & Barton,
+#: Int. J. Rock Mech. Min. Sci. 18 (1981) 1), as later work quotes them.
+BANDIS_LENGTHS = (50.0, 400.0)

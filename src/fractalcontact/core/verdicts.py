@@ -1,6 +1,6 @@
 """Words that the atlas stores as verdicts and reasons, each once."""
 
-from .limits import CORRECTED_NODES
+from .limits import BANDIS_LENGTHS, CORRECTED_NODES
 
 #: Verdicts on a statement of the paper.
 HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
@@ -44,3 +44,8 @@ TOO_WIDE = "its 95 % interval is too wide to be of use"
 
 #: Places of an estimate relative to the values of theories.
 BELOW, WITHIN, ABOVE = "below", "within", "above"
+
+#: Reason why Barton's law of scale gives no strength of a length.
+OFF_LENGTHS = "the law of scale was measured on lengths from {:g} to {:g} mm".format(
+    *BANDIS_LENGTHS
+)

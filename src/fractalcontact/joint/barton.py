@@ -13,9 +13,6 @@ Numbers = float | np.ndarray | xr.DataArray
 
 #: Length of the joints that JRC and JCS are tabulated for, mm.
 LABORATORY_LENGTH = 100.0
-#: Lengths of the shear tests that the law of scale was made for, mm (Bandis, Lumsden & Barton, Int.
-#: J. Rock Mech. Min. Sci. 18 (1981) 1), as later work quotes them.
-BANDIS_LENGTHS = (50.0, 400.0)
 
 
 def joint_roughness(z2: Numbers) -> Numbers:

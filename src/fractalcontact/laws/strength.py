@@ -18,11 +18,18 @@ from ..core.directions import DIRECTIONS
 from ..core.estimate import Estimate, names_of
 from ..core.intervals import mean_interval, t_quantile
 from ..core.labels import cf_attrs
-from ..core.limits import FRICTION_FACTORS, JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
+from ..core.limits import (
+    BANDIS_LENGTHS,
+    FRICTION_FACTORS,
+    JRC_RANGE,
+    LARGEST_FRICTION_ANGLE,
+    MAX_TOUCHING,
+)
 from ..core.per_curve import per_curve
 from ..core.settings import Friction, StrengthSettings
+from ..core.verdicts import OFF_LENGTHS
 from ..core.window import nominal_area, window_sides
-from ..joint.barton import BANDIS_LENGTHS, LABORATORY_LENGTH, barton_strength, scaled_joint
+from ..joint.barton import LABORATORY_LENGTH, barton_strength, scaled_joint
 from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
@@ -271,9 +278,6 @@ _SOLVED = (
 #: Rules for the strength of blocks.
 RULES = ("dilatancy", "contact", "Barton", "Barton and Bandis")
 #: Reasons why a rule has no strength for a length.
-OFF_LENGTHS = "the law of scale was measured on lengths from {:g} to {:g} mm".format(
-    *BANDIS_LENGTHS
-)
 ABOVE_SCALE = "JRC_n, JRC scaled to that length, is above 20, where Barton's law ends"
 UNSCALED = f"JRC and JCS are those of {LABORATORY_LENGTH:g} mm"
 OF_WINDOW = "computed for the window alone: no law carries it to another length"

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.determined import decided_by_scan
 from ..core.estimate import Estimate
 from ..core.labels import BOUNDARIES, OPPOSITE, printable
-from ..core.limits import ALL_CRUSH, JRC_SAMPLING
+from ..core.limits import ALL_CRUSH, JRC_SAMPLING, PRESSURE_ROUNDING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
 from ..report.published import Number, Row, read, read_at, row_of
@@ -19,16 +19,10 @@ from .files import CARD
 from .lights import trust_in
 from .summary import STRENGTH_RULES, lengths_of
 
-#: Intervals as the register names them, in words.
-_ALONE = {
-    "solver": " solver error alone",
-    "slopes over twice the spacing": " change with slopes over twice the spacing alone",
-}
+#: Interval, as the register names it, of which the first screen says whether it holds the scans.
 _OF_SURFACE = "all errors of this surface"
-#: Relative difference of pressures that are one.
-_ROUNDING = 1e-9
-#: Space that keeps an interval on one line.
 _ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
+#: Space that keeps an interval on one line.
 _NBSP = "\u00a0"
 #: What the rules are, a line each for those computed here and those measured by others.
 _EXPLAINED = (
@@ -59,7 +53,7 @@ def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
         "model": model_of(subject),
         "window": window_words(subject),
         "facts": facts_of(subject, synthetic),
-        "trust": trust_in(subject),
+        "trust": trust_in(subject, synthetic),
     }
 
 
@@ -89,7 +83,7 @@ def window_words(subject: Subject) -> str:
     sides = f"{short(lengths['window_x'])} × {short(lengths['window_y'])} mm"
     chosen = f": {note}" if note else ""
     spacing = with_unit(lengths["spacing"], "mm")
-    return f"window {sides}, spacing {spacing}, {boundary_of(subject)}{chosen}"
+    return f"window {sides}, {boundary_of(subject)}, spacing {spacing}{chosen}"
 
 
 def boundary_of(subject: Subject) -> str:
@@ -173,8 +167,8 @@ class _Block:
         """Clause where suspicious cells carry loads that would seat the joint; "" if not."""
         states = self.subject.states("closure")
         pressure = states["nominal_pressure"].values
-        lighter = pressure < float(states["seating_pressure"]) * (1 - _ROUNDING)
-        lighter &= pressure >= self.subject.settings["seating_pressure"] * (1 - _ROUNDING)
+        lighter = pressure < float(states["seating_pressure"]) * (1 - PRESSURE_ROUNDING)
+        lighter &= pressure >= self.subject.settings["seating_pressure"] * (1 - PRESSURE_ROUNDING)
         if not decided_by_scan(states["suspect_load_share"].values[lighter]).any():
             return ""
         words = ", as suspicious cells of the scan carry most of lighter loads"
@@ -222,9 +216,6 @@ class _Block:
         """
         numbers = {words: self.number(name) for name, words in STRENGTH_RULES.items()}
         missing = {words: number.missing for words, number in numbers.items() if number.missing}
-        kinds = {
-            words: _ALONE.get(row_of(name).interval, "") for name, words in STRENGTH_RULES.items()
-        }
         rules = [(number.value, words) for words, number in numbers.items() if not number.missing]
         rules.sort(key=lambda rule: rule[0])
         if not rules:
@@ -233,10 +224,7 @@ class _Block:
         source = str(friction.estimate.reason)
         lines = [f"phi_b = {short(friction.value)}° {source}"] if source else []
         lines += [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
-        lines += [
-            f"{of} {short(value)} {_ends(numbers[of], of=kinds[of])}".rstrip()
-            for value, of in rules
-        ]
+        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
         lines += [text for text in _EXPLAINED if len(rules) > 1]
         ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
@@ -245,7 +233,7 @@ class _Block:
     def _holds(self, interval: str) -> str:
         """Clause on what an interval holds: the errors of scans where there are other readings."""
         if interval != _OF_SURFACE:
-            return _ALONE.get(interval, "")
+            return ""
         if self.synthetic:
             return " this surface"
         sources = self.subject["error_budget"]["source"].values
@@ -275,6 +263,8 @@ class _Block:
         """Range of a number over the other offsets of one scanned face, whose own is assumed."""
         specimen, reported = self.subject["specimens"], self.subject.reported
         if row.stage != "closure" or self.synthetic or specimen.attrs["opposite"] != "match":
+            return ""
+        if row.name == "seated_closure":  # each offset has a seat of its own
             return ""
         curve = reported.curves(self.subject[row.stage])[row.variable]
         values = size * curve.sel(normal_force=reported.force, method="nearest")

@@ -199,16 +199,17 @@ def _place(light):
     return ("faces", "scan", "model", "nodes", "grid").index(light.key)
 
 
-def trust_in(subject: Subject) -> Trust:
+def trust_in(subject: Subject, synthetic: bool = False) -> Trust:
     """Trust in a specimen; what helps begins with phi_b where its strength rests on an assumed one.
 
-    Tests differ from a strength with an assumed phi_b by more than any other error of it.
+    A synthetic surface has no rock to be tested. Tests differ from a strength with an assumed phi_b
+    by more than any other error of it.
     """
     trust = trust_of(lights_of(subject))
     material = subject.settings["material"]
     is_stated = math.isfinite(material.get("basic_friction_angle") or math.nan)
     is_assumed = material.get("basic_friction_angle_is") == "assumed"
-    if subject.direction == "none" or not (is_stated and is_assumed):
+    if synthetic or subject.direction == "none" or not (is_stated and is_assumed):
         return trust
     low, high = FRICTION_FACTORS["assumed"]
     tests = f"tests had {short(low)} to {short(high)} times the strength"

@@ -240,16 +240,14 @@ def under_load(numbers: list[Number], load: int, loads: int) -> Number:
 def array_of(row: Row, subject: Subject, source: str) -> xr.DataArray | None:
     """Variable "STAGE/VARIABLE" at the state of a row; None if the atlas lacks it.
 
-    It is over all loads of the joint: a stage that leaves loads out, as branches do those that no
-    ten nodes carry, has no value there.
+    Branches leave out the loads far above the seating pressure, and have no value there.
     """
     stage, _, variable = source.partition("/")
     if stage not in subject.stages or variable not in subject[stage]:
         return None
     states = subject[stage] if row.all else subject.states(stage)
     array = states[variable].sel({k: v for k, v in row.of.items() if k in states[variable].dims})
-    loads = array["normal_force"].values if "normal_force" in array.dims else subject.forces
-    if loads.size < subject.forces.size and np.isin(loads, subject.forces).all():
+    if stage == "branches" and "normal_force" in array.dims:
         missing = "" if array.dtype.kind == "U" else math.nan
         array = array.reindex(normal_force=subject.forces, fill_value=missing)
     return array

@@ -19,6 +19,8 @@ _BESIDE = (
     "fit_step",
     "branch",
     "test",
+    "rule",
+    "length",
 )
 
 

@@ -104,9 +104,10 @@ def _draw_profile(axes, profile, columns):
     unit, size = length_unit(float(x[-1]))
     dots = {"color": kit.COLOURS[3], "marker": "o", "ms": 2.5, "ls": "none"}
     loaded = "load acts here", dots
+    upper = "upper face, registered" if "upper_as_given" in profile else "upper face"
     styles = {
         "lower": ("lower face", {"color": kit.COLOURS[0], "lw": 0.9}),
-        "upper": ("upper face, registered", {"color": kit.COLOURS[4], "lw": 0.9}),
+        "upper": (upper, {"color": kit.COLOURS[4], "lw": 0.9}),
         "upper_as_given": ("upper face as scanned", {"color": kit.COLOURS[1], "ls": ":", "lw": 1}),
         "lower_in_contact": loaded,
         "upper_in_contact": loaded,

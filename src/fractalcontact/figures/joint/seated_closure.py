@@ -75,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = kit.table_of(a, b, *below)
     total = subject["error_budget"]["reference_stiffness_total"]
-    words = {"tests": kit.test_words(subject, "closure"), **_words(curve, seat, reloading, total)}
+    words = {"tests": kit.test_words(subject, "closure"), **_words(subject, seat, reloading, total)}
     return kit.Drawing(figure, table, kit.caption(__name__, **words))
 
 
@@ -121,9 +121,10 @@ def _draw_stiffness(panel: kit.Panel, curve: xr.Dataset, style: dict[str, Any]) 
 
 
 def _words(
-    curve: xr.Dataset, seat: float, reloading: xr.Dataset, total: xr.DataArray
+    subject: Subject, seat: float, reloading: xr.Dataset, total: xr.DataArray
 ) -> dict[str, Any]:
     """Values of the caption."""
+    curve, budget = subject.states("closure"), subject["error_budget"]
     stiffness = curve["reference_stiffness"]
     errors = total.where(np.isfinite(stiffness), drop=True)
     determined = stiffness[np.isfinite(stiffness)]
@@ -137,9 +138,7 @@ def _words(
         "middle": float(middle),
         "seat": seat,
         "largest": float(curve["seated_fit_max"]),
-        "k_ni": Estimate.read(curve, "seated_k_ni"),
-        "v_m": Estimate.read(curve, "seated_v_m"),
-        "chi": Estimate.read(curve, "seated_chi"),
+        **{name: Estimate.read(budget, name) for name in ("k_ni", "v_m", "chi")},
         "misfits": [float(curve[f"seated_{law}_misfit"]) for law in ("hyperbola", "logarithm")],
         "reason": str(curve["seated_k_ni_reason"].item()),
         "stated": [

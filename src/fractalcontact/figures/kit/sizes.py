@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from ...core.estimate import Estimate
 from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
 from ...core.text import compact, length_unit, number
+from ...core.verdicts import OFF_LENGTHS
 from .drawing import MARKERS, colour_of
 from .points import draw_points
 
@@ -61,7 +62,10 @@ def roughness_words(strength: xr.Dataset) -> str:
         words += f", {compact(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
         words += (
-            f"; scaled to this length it exceeds {compact(JRC_RANGE[1], 6)}, the largest of his law"
+            "; this length lies off his law of scale"
+            if strength["barton_scaled_reason"] == OFF_LENGTHS
+            else f"; scaled to this length it exceeds {compact(JRC_RANGE[1], 6)}, the largest of "
+            "his law"
         )
     return words
 
