@@ -102,7 +102,8 @@ ENSEMBLE = branch(lambda wildcards: wildcards.specimen in ENSEMBLES, then=rules.
 # and the errors of numbers on the card and in tables, by source. Some states are solved again: on finer
 # grids and in other windows for the errors, and on unloading for `branches`. Split into four jobs, each would
 # read all states, and config/smoke.yaml would take 5 % more processor time. `choices` says which states
-# were solved, how exactly, and why; contact/{specimen}.nc has the states of all contact jobs.
+# were solved, how exactly, and why; contact/{specimen}.nc has the contact domains of
+# all contact jobs.
 rule closure_and_box_counts:
     input:
         specimens=rules.roughness_and_composite.output.specimens,

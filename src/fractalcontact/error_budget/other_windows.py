@@ -75,7 +75,7 @@ def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, 
 def other_composites(loading: JointLoading, cells: int) -> tuple[list[np.ndarray], float]:
     """Composite topographies of other windows at an offset, mm, and the area that all cover.
 
-    None where the scan is too small. The area is in windows and holds the specimen's own.
+    The list is empty where the scan is too small. The area is in windows, the specimen's included.
     """
     specimen = loading.specimen
     whole = whole_composite(specimen, loading.direction, cells)

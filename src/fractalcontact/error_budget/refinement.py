@@ -49,7 +49,7 @@ ABSOLUTE = ("separation", "delta_sigma")
 
 @dataclass(frozen=True, eq=False)
 class LoadCurve:
-    """Load curve of one offset at the finest resolution, whose errors are requested.
+    """Load curve of one offset at one resolution, whose errors are requested.
 
     The composite topography h and the largest height at zero offset, ``reference``, from which
     dilatancy counts (against a plane, the mean), are in mm; ``curve`` and ``domains`` are the

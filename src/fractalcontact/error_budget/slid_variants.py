@@ -29,9 +29,10 @@ def slid_variants(loading: JointLoading, force: float) -> dict[str, tuple]:
 
     ``variant_dilatancy`` (variant, offset), mm, is delta = delta_r - w_int under the force on the
     window (N), the same pressure on quarters; ``variant_kind`` (variant) one of :data:`OWN`,
-    :data:`WINDOW`, :data:`QUARTER` and :data:`READ`; ``windows_independent`` the area that all
-    windows cover, in windows. Quarters stand in where the scan is too small for other windows.
-    Every second node, or fewer, is taken of windows beyond :data:`MAX_SIDE`. Raises `NotConverged`.
+    :data:`WINDOW`, :data:`QUARTER` and :data:`READ`; ``windows_independent`` the number of
+    independent windows, 4 for quarters. Quarters stand in where the scan is too small for other
+    windows. Every second node, or fewer, is taken of windows beyond :data:`MAX_SIDE`. Raises
+    `NotConverged`.
     """
     kinds, composites, effective = _variants(loading)
     factor = -(-max(loading.shape) // MAX_SIDE)
@@ -49,7 +50,7 @@ def slid_variants(loading: JointLoading, force: float) -> dict[str, tuple]:
     return {
         "variant_dilatancy": (_DIMS, np.reshape(curves, (len(kinds), len(loading.cells))), words),
         "variant_kind": ("variant", kinds, of_kind),
-        "windows_independent": ((), effective, cf_attrs("1", "area of all windows, in windows")),
+        "windows_independent": ((), effective, cf_attrs("1", "number of independent windows")),
     }
 
 

@@ -34,11 +34,9 @@ _TABLE = {
 
 
 def elimination_alone(loading: JointLoading) -> xr.Dataset:
-    """Contact sets of a free window by elimination, at the one offset of a loading.
+    """Contact sets of a free window by elimination, at the one offset and three closures.
 
-    They are at three closures.
-
-    Over (tentative,), the fraction of the nodes that interpenetrate before anything is dropped:
+    A closure is stated as (tentative,), the fraction of the nodes that interpenetrate at first:
     ``elimination_steps`` and ``elimination_wrong``, on every k-th node of the window, at most
     :data:`MAX_SIDE` along a side. Flush faces have NaN.
     """

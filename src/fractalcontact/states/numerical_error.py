@@ -69,9 +69,9 @@ def _extrapolated(values: ArrayLike) -> _Extrapolated:
 def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> NumericalError:
     """Numerical error of values (3, ...) at the spacing s, from those at s, s/2 and s/4.
 
-    Values at s/4 are NaN where that was not solved. ``quantity`` is one of :data:`OF_EDGE`, but the
-    closure, or any other; ``edge`` (...) is the values' part that depends on the cells at the edge
-    of contact.
+    Values at s/4 are NaN where that was not solved. ``quantity`` is their name: those in
+    :data:`OF_EDGE` have rules of their own. ``edge`` (...) is the part of the values that depends
+    on the cells at the edge of contact.
 
     Where the changes from s to s/2 and from s/2 to s/4 have one sign and the second is smaller,
     their ratio gives the order, and Richardson's extrapolation the limit: the error is the distance

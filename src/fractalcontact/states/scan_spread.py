@@ -1,27 +1,24 @@
 """Scan error of two scanned faces: spread over fair readings of their scans."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from ..core.settings import Load
 from ..scan.other_readings import other_readings
 from .loading import JointLoading
 from .subgrid import STATE_QUANTITIES, closure_from, composite_quantities
 
 
-def reading_values(
-    loading: JointLoading, loads: Sequence[Load] | None = None, factor: int = 1
-) -> dict[str, np.ndarray]:
+def reading_values(loading: JointLoading, factor: int = 1) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness by this reading and each other one.
 
     Arrays (reading, load) of :func:`states.subgrid.composite_quantities` at ``factor`` times the
-    scan's spacing, this reading first, under the study's loads unless others are given. A reading
+    scan's spacing, this reading first, under the study's loads. A reading
     whose faces have a hole where the window slides is left out. Raises `NotConverged`.
     """
     (cells,) = loading.cells
-    forces = loading.forces(loading.settings.loads if loads is None else loads)
+    forces = loading.forces(loading.settings.loads)
     readings = {"this one": loading.specimen, **other_readings(loading.specimen)}
     variants = (
         replace(loading, specimen=specimen).variant(name, int(cells))
