@@ -170,24 +170,24 @@ $(VENV)/bin/python:
 FOUND_IN := $(shell cat $(VENV)/lib/python*/site-packages/__editable__.fractalcontact-*.pth 2>/dev/null)
 .PHONY: moved
 # Bytecode is compiled now: without it every job pays the imports three times over.
-$(VENV)/installed: requirements.lock pyproject.toml $(if $(filter-out $(CURDIR)/src,$(FOUND_IN)),moved) | $(VENV)/bin/python
-	$(PIP) install --require-hashes --compile -r requirements.lock
+$(VENV)/installed: requirements/study.lock pyproject.toml $(if $(filter-out $(CURDIR)/src,$(FOUND_IN)),moved) | $(VENV)/bin/python
+	$(PIP) install --require-hashes --compile -r requirements/study.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 	$(BIN)/python -m compileall -q src
 # Compiled now too: else the first jobs of the first study would all do it.
 	@$(BIN)/python -m fractalcontact.commands.compile_kernels
 	@touch $@
 
-$(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
-	$(PIP) install --require-hashes --compile -r requirements-test.lock
+$(VENV)/tests-installed: requirements/test.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements/test.lock
 	@touch $@
 
-$(VENV)/browser-installed: requirements-browser.lock $(VENV)/tests-installed
-	$(PIP) install --require-hashes --compile -r requirements-browser.lock
+$(VENV)/browser-installed: requirements/browser.lock $(VENV)/tests-installed
+	$(PIP) install --require-hashes --compile -r requirements/browser.lock
 	@touch $@
 
-$(VENV)/docs-installed: requirements-docs.lock $(VENV)/installed
-	$(PIP) install --require-hashes --compile -r requirements-docs.lock
+$(VENV)/docs-installed: requirements/docs.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements/docs.lock
 	@touch $@
 
 $(VENV)/slurm-installed: $(VENV)/installed
@@ -203,11 +203,11 @@ $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet
 lock:
-	$(COMPILE) pyproject.toml --extra study --extra flow --extra install -o requirements.lock
-	$(COMPILE) pyproject.toml --extra study --extra flow --extra install --extra test -c requirements.lock -o requirements-test.lock
-	$(COMPILE) --group browser -c requirements-test.lock -o requirements-browser.lock
-	$(COMPILE) --group docs -c requirements-test.lock -o requirements-docs.lock
-	grep -v '^ *--hash=' requirements.lock | sed 's/ *\\$$//' > requirements-conda.txt
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install -o requirements/study.lock
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install --extra test -c requirements/study.lock -o requirements/test.lock
+	$(COMPILE) --group browser -c requirements/test.lock -o requirements/browser.lock
+	$(COMPILE) --group docs -c requirements/test.lock -o requirements/docs.lock
+	grep -v '^ *--hash=' requirements/study.lock | sed 's/ *\\$$//' > requirements/conda.txt
 
 # Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
 faults: $(VENV)/tests-installed $(if $(findstring --slurm,$(FAULTS)),$(VENV)/slurm-installed)

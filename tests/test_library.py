@@ -200,12 +200,12 @@ def test_a_format_whose_library_is_missing_says_what_to_install(tmp_path, monkey
 
 
 def test_the_conda_environment_has_the_versions_of_the_lock():
-    pinned = re.findall(r"^([\w.-]+==\S+)", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
+    pinned = re.findall(r"^([\w.-]+==\S+)", (ROOT / "requirements/study.lock").read_text(), re.MULTILINE)
     conda = re.findall(
-        r"^([\w.-]+==\S+)", (ROOT / "requirements-conda.txt").read_text(), re.MULTILINE
+        r"^([\w.-]+==\S+)", (ROOT / "requirements/conda.txt").read_text(), re.MULTILINE
     )
     assert conda == pinned
     assert len(conda) > 50
-    assert "--hash" not in (ROOT / "requirements-conda.txt").read_text()
+    assert "--hash" not in (ROOT / "requirements/conda.txt").read_text()
     pip = yaml.safe_load((ROOT / "environment.yml").read_text())["dependencies"][-1]["pip"]
-    assert pip == ["-r requirements-conda.txt", "-e ."]
+    assert pip == ["-r requirements/conda.txt", "-e ."]
