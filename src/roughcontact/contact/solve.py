@@ -2,8 +2,9 @@
 
 A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
 if the force is given, the sum of p is fixed and w is free. With a hardness H the pressure is
-limited to H, and nodes there may be pressed in. `active_set` and docs/solver.md describe how such a
-state is found. Here loads become dimensionless, starts are chosen, and results are verified.
+limited to H, and nodes there may be pressed in. `active_set` and the page
+packages/roughcontact/docs/solver.md describe how such a state is found. Here loads become
+dimensionless, starts are chosen, and results are verified.
 """
 
 import math
