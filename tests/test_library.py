@@ -114,6 +114,9 @@ def test_a_type_checker_sees_the_signatures(tmp_path):
 def test_the_version_stands_in_one_place():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["version"] == fractalcontact.__version__
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"(?m)^## ([\d.]+) - (\S+)$", changes)
+    assert newest.groups() == (citation["version"], str(citation["date-released"]))
     for project in (ROOT, ROOT / "packages/roughcontact"):
         settings = tomllib.loads((project / "pyproject.toml").read_text())
         assert settings["tool"]["setuptools"]["dynamic"]["version"] == {
