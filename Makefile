@@ -8,6 +8,7 @@
 #:   make smoke                 the small study config/smoke.yaml
 #:   make slurm                 the study on a cluster
 #:   make report                the result page alone, and what it is made of
+#:   make notebook              docs/notebooks in the browser (JupyterLab, installed at the first call)
 #:   make verify                every result against its checksum
 #:
 #: A developer's
@@ -47,7 +48,7 @@ OPTIONS = -- --cores $(CORES)
 # does it say nothing; and of that of a closed pipe no shell says anything.
 QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
-.PHONY: help all study new check-scans describe dry-run keep-going smoke slurm report verify test test-all test-processors test-slurm test-slurm-accounting test-browser examples faults lint format docs schema rule-graph keep same lock clean
+.PHONY: help all study new check-scans describe dry-run keep-going smoke slurm report notebook verify test test-all test-processors test-slurm test-slurm-accounting test-browser examples faults lint format docs schema rule-graph keep same lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -121,9 +122,16 @@ test-browser: $(VENV)/browser-installed
 	@chromium=$$(sh tests/support/chromium.sh) && \
 	  CHROMIUM=$$chromium $(BIN)/python -m pytest tests/browser && cat results/browser/report.txt
 
+# The study that the notebook reads.
+NOTEBOOK_STUDY = @STUDY=docs/notebooks/own_joint.yaml; $(RUN) $(OPTIONS) results/own_joint/atlas.nc
 docs: $(VENV)/docs-installed
+	$(NOTEBOOK_STUDY)
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs results/docs
 	@echo "file://$(CURDIR)/results/docs/index.html"
+
+notebook: $(VENV)/notebook-installed
+	$(NOTEBOOK_STUDY)
+	$(BIN)/python -m jupyterlab docs/notebooks/own_joint.ipynb
 
 # Its daemons, where Debian has them: who is not root, or elsewhere, is told what is missing.
 HAVE_DAEMON = command -v $(1) >/dev/null || { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && \
@@ -188,6 +196,11 @@ $(VENV)/browser-installed: requirements/browser.lock $(VENV)/tests-installed
 
 $(VENV)/docs-installed: requirements/docs.lock $(VENV)/installed
 	$(PIP) install --require-hashes --compile -r requirements/docs.lock
+	@touch $@
+
+# Not locked, as no result depends on it.
+$(VENV)/notebook-installed: pyproject.toml $(VENV)/installed
+	$(PIP) install --no-build-isolation -e '.[notebook]'
 	@touch $@
 
 $(VENV)/slurm-installed: $(VENV)/installed
