@@ -7,7 +7,7 @@ author = "The fractalcontact founders"
 version = release = fractalcontact.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
-source_suffix = {".md": "markdown", ".ipynb": "myst-nb"}
+source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
 exclude_patterns = ["_build"]
 # So that links to a heading are checked as those to a page are.
 myst_heading_anchors = 3
