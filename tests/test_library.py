@@ -203,7 +203,9 @@ def test_a_format_whose_library_is_missing_says_what_to_install(tmp_path, monkey
 
 
 def test_the_conda_environment_has_the_versions_of_the_lock():
-    pinned = re.findall(r"^([\w.-]+==\S+)", (ROOT / "requirements/study.lock").read_text(), re.MULTILINE)
+    pinned = re.findall(
+        r"^([\w.-]+==\S+)", (ROOT / "requirements/study.lock").read_text(), re.MULTILINE
+    )
     conda = re.findall(
         r"^([\w.-]+==\S+)", (ROOT / "requirements/conda.txt").read_text(), re.MULTILINE
     )

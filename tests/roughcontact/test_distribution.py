@@ -52,6 +52,12 @@ def test_the_script_of_its_readme_solves_what_it_says():
     assert 0 < state.area < state.space.area
 
 
+def test_the_folder_of_kernels_is_found_as_the_readme_says():
+    code = "import roughcontact; print(roughcontact.kernel_cache.cache_folder())"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == str(roughcontact.kernel_cache.cache_folder())
+
+
 def imported(path):
     """Top names that a file imports."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

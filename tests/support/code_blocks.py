@@ -101,7 +101,10 @@ NOT_RUN = {
         "packages/roughcontact/docs/solver_speed.md",
         "OMP_NUM_THREADS=1 python benchmarks/capped.py",
     ): "takes minutes of a quiet machine",
-    ("packages/roughcontact/docs/solver_speed.md", "make bench PEERS=1"): f"{HOURS}, installs other programs",
+    (
+        "packages/roughcontact/docs/solver_speed.md",
+        "make bench PEERS=1",
+    ): f"{HOURS}, installs other programs",
     (
         "packages/roughcontact/docs/solver_speed.md",
         "OMP_NUM_THREADS=1 python benchmarks/periodic_peers.py",
