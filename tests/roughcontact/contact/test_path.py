@@ -229,8 +229,8 @@ def test_hardness_of_each_node_presses_in_the_soft_ones_alone():
 @pytest.mark.parametrize(
     ("loads", "message"),
     [
-        ({}, "either forces= or closures="),
-        ({"forces": [1.0], "closures": [1.0]}, "either forces= or closures="),
+        ({}, "exactly one of forces="),
+        ({"forces": [1.0], "closures": [1.0]}, "exactly one of forces="),
         ({"forces": [1.0, -1.0]}, "forces: expected"),
         ({"forces": [[1.0]]}, "forces: expected"),
         ({"closures": [np.nan]}, "closures: expected"),
