@@ -13,7 +13,6 @@ from fractalcontact.states.registration_spread import (
     registration_spread,
     registration_values,
 )
-from fractalcontact.states.subgrid import closure_from
 
 MIDDLE = (12.0, 12.0)
 
@@ -81,11 +80,3 @@ def test_loads_can_be_chosen():
     whole_ladder = registration_values(whole)
     for name, of in whole_ladder.items():
         assert one[name][:, 0] == pytest.approx(of[:, 1], rel=1e-2)
-
-
-def test_closure_counts_from_the_seat_that_is_given():
-    forces, closure = np.array([1.0, 2.0, 4.0]), np.array([[0.1, 0.3, 0.6], [0.2, 0.2, 0.9]])
-    np.testing.assert_allclose(closure_from(closure, forces, 2.0)[:, 1:], [[0, 0.3], [0, 0.7]])
-    assert np.isnan(closure_from(closure, forces, 2.0)[:, 0]).all()
-    for no_seat in (np.nan, 3.0):
-        assert np.isnan(closure_from(closure, forces, no_seat)).all()

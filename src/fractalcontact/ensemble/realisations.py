@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset, titled
 from ..core.labels import REALISATIONS, TWINS, cf_attrs
-from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import corrected_scaling
@@ -27,6 +27,7 @@ from ..size_effect.size_exponents import of_usable_sizes, size_exponent
 from ..size_effect.size_law import WINDOW_QUANTITIES
 from ..size_effect.windows import solved_windows
 from ..states.loading import JointLoading
+from ..states.seat import closure_from, seat_of
 from ..states.states import MAP_GAP, forces_of, with_pressure
 from ..states.sweep import contact_states
 from ..surface.embedded import embedded_surface
@@ -145,25 +146,23 @@ def ensemble(
 def _light(settings: EnsembleSettings, area: float) -> EnsembleSettings:
     """Settings with the loads of the ensemble alone, as forces, sub-windows under one."""
     forces = forces_of(settings.loads, area)
-    seated = forces[forces >= settings.seating_pressure * area * (1 - PRESSURE_ROUNDING)]
-    wanted = {*seated[:1], *forces_of(settings.drawn_loads, area), forces[-1]}
+    seat = float(seat_of(forces, settings.seating_pressure * area))
+    wanted = {seat, *forces_of(settings.drawn_loads, area), forces[-1]}
     return replace(
         settings,
-        loads=[(float(force), "force") for force in sorted(wanted)],
+        # All loads of the study may be lighter than the seat, which is NaN then.
+        loads=[(float(force), "force") for force in sorted(filter(np.isfinite, wanted))],
         dilatancy_loads=[settings.map_load],
     )
 
 
 def _add_seated_closure(result: xr.Dataset, seat: float) -> None:
     """Closure from the first load, N, at or above ``seat`` that resolves every realisation."""
-    force = result["normal_force"]
-    heavy = force >= seat * (1 - PRESSURE_ROUNDING)
-    resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation") & heavy
-    common = force.where(resolved).min()
-    closing = result["interface_closure"]
-    seated = closing - closing.where(force == common).sum("normal_force")
+    forces, closing = result["normal_force"].values, result["interface_closure"]
+    resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation").values
+    seated = closure_from(closing.values, forces, float(seat_of(forces, seat, resolved)))
     attrs = cf_attrs("mm", "interface closure from the first load at which all have ten nodes on")
-    result[_SEATED] = seated.where(force >= common).transpose(*closing.dims).assign_attrs(attrs)
+    result[_SEATED] = closing.dims, seated, attrs
 
 
 def _add_eq6(result: xr.Dataset) -> None:

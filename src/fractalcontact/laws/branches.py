@@ -15,10 +15,11 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import PRESSURE_ROUNDING, REFERENCE_PRESSURES
+from ..core.limits import REFERENCE_PRESSURES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
+from ..states.seat import closure_from
 from ..states.settlement import interface_closure, interface_stiffness, window_settlement
 from .closure import determined_closure, stiffness_reason
 from .reference_states import further_pressures, stored_states
@@ -190,9 +191,6 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     settlement = xr.DataArray(window_settlement(space, forces), dims="normal_force")
     closure = interface_closure(data["closure"], settlement, flush)
     closure = determined_closure(closure, flush).transpose(*_STATES)
-    at_seat = np.isclose(pressure, seating, rtol=PRESSURE_ROUNDING, atol=0)
-    seat = closure[0].where(at_seat).sum(min_count=1)
-    beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
     compliance = 1 / (data["stiffness"] / loading.area)
     stiffness = interface_stiffness(compliance, settlement / pressure).where(~flush)
     no_total = curve["interface_stiffness_reason"].reset_coords(drop=True)
@@ -216,7 +214,9 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     data = data.drop_vars(["further_stiffness", "further_force"], errors="ignore")
     values = {
         "interface_closure": closure.values,
-        "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
+        "seated_closure": closure_from(
+            closure.values, pressure, seating, on_loading=closure.values[0]
+        ),
         "interface_stiffness": stiffness.values,
         "interface_stiffness_reason": reason.values,
         "reference_stiffness": at_reference,

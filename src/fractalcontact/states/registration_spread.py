@@ -11,7 +11,8 @@ from ..core.settings import Load
 from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .loading import JointLoading
-from .subgrid import STATE_QUANTITIES, closure_from, composite_quantities
+from .seat import closure_from
+from .subgrid import STATE_QUANTITIES, composite_quantities
 
 #: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
 #: seat, mm.

@@ -7,7 +7,8 @@ import numpy as np
 
 from ..scan.other_readings import other_readings
 from .loading import JointLoading
-from .subgrid import STATE_QUANTITIES, closure_from, composite_quantities
+from .seat import closure_from
+from .subgrid import STATE_QUANTITIES, composite_quantities
 
 
 def reading_values(loading: JointLoading, factor: int = 1) -> dict[str, np.ndarray]:

@@ -10,7 +10,7 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.determined import decided_by_scan
-from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from ..joint.joint import prefractal
 from ..joint.overlap import suspect_load_share
 from .loading import JointLoading, Variant
@@ -117,15 +117,6 @@ def composite_quantities(
         rows.append([[of_state[name] for name in names] for of_state in of_loads])
     table = np.reshape(rows, (len(rows), len(forces), len(names))).astype(float)
     return dict(zip(names, np.moveaxis(table, -1, 0), strict=True))
-
-
-def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.ndarray:
-    """Closures (variant, load) counted from the force of the seat, N; NaN without one and below."""
-    seats = np.flatnonzero(np.isclose(forces, seat, rtol=PRESSURE_ROUNDING, atol=0))
-    if not seats.size:
-        return np.full(closure.shape, np.nan)
-    seated = closure - closure[:, seats[:1]]
-    return np.where(forces >= forces[seats[0]], seated, np.nan)
 
 
 def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
