@@ -14,8 +14,9 @@ import numpy as np
 
 from fractalcontact.error_budget.refinement import FACTORS, curve_errors
 from fractalcontact.roughness.dimension import slope_statistics
+from fractalcontact.states.state_quantities import STATE_QUANTITIES, state_quantities
 from fractalcontact.states.state_scalars import state_errors
-from fractalcontact.states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
+from fractalcontact.states.subgrid import subgrid_states, summit
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.elastic.halfspace import HalfSpace
 

@@ -41,9 +41,9 @@ from fractalcontact.stages.closure_and_box_counts import reported_budget
 from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.states.loading import JointLoading, Variant
 from fractalcontact.states.seat import closure_from
+from fractalcontact.states.state_quantities import SOUND, composite_quantities
 from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import combine, contact_domains, forces_of, with_pressure
-from fractalcontact.states.subgrid import SOUND, composite_quantities
 from fractalcontact.states.sweep import joint_states, load_steps
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments

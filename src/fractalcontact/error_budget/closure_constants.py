@@ -10,7 +10,7 @@ from ..core.intervals import t_quantile
 from ..laws.closure_laws import fit_hyperbola, fit_semi_logarithmic
 from ..laws.seated_laws import within_span
 from ..states.seat import closure_from, seat_of
-from ..states.subgrid import SOUND
+from ..states.state_quantities import SOUND
 
 #: Constants by name: variable of the stage ``closure``, unit, long name.
 CONSTANTS = {
@@ -36,8 +36,8 @@ def closure_constants(
     seating_pressure : float
         That of the study, MPa.
     readings, motions : mapping of str to (variant, load) ndarray, or None
-        From :func:`states.scan_spread.reading_values`, this reading first, and from
-        :func:`states.registration_spread.registration_values`; None of what is no pair.
+        From :func:`error_budget.two_scans.reading_values`, this reading first, and from
+        :func:`error_budget.two_scans.registration_values`; None of what is no pair.
 
     Notes
     -----

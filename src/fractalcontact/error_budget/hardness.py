@@ -19,8 +19,8 @@ from ..flow.network import hydraulic_aperture
 from ..joint.joint import sliding_axis
 from ..laws.reference_states import further_pressures, with_curve_stiffness
 from ..laws.seated_laws import at_reference_pressures
+from ..states.state_quantities import state_quantities
 from ..states.state_scalars import aperture
-from ..states.subgrid import state_quantities
 from ..states.sweep import load_steps
 from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_dimension, chosen_loads
 

@@ -18,8 +18,9 @@ from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
 from ..states.loading import JointLoading
 from ..states.numerical_error import NumericalError, closure_numerical_error, numerical_error
+from ..states.state_quantities import STATE_QUANTITIES, state_quantities
 from ..states.states import forces_of
-from ..states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
+from ..states.subgrid import subgrid_states, summit
 
 #: Largest grids, in cells: at s/2, at s/4, and at s/4 of a study that requests all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
@@ -204,8 +205,8 @@ def budget_values(
 ) -> list[float]:
     """Values of :data:`BUDGET_QUANTITIES` of a state.
 
-    ``highest`` and ``reference`` as for :func:`states.subgrid.state_quantities`, ``limits`` as for
-    :func:`budget_dimension`.
+    ``highest`` and ``reference`` as for :func:`states.state_quantities.state_quantities`,
+    ``limits`` as for :func:`budget_dimension`.
     """
     quantities = state_quantities(state, highest, reference)
     return [*quantities.values(), budget_dimension(state, limits)]

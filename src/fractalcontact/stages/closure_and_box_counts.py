@@ -17,9 +17,17 @@ from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.closure_constants import closure_constants
+from ..error_budget.elimination import elimination_alone
 from ..error_budget.error_budget import error_budget
 from ..error_budget.slid_variants import slid_variants
 from ..error_budget.solve_plan import solve_plan
+from ..error_budget.two_scans import (
+    reading_values,
+    registration_spread,
+    registration_values,
+    scan_spread,
+    wider_spread,
+)
 from ..joint.openings import prefractal_openings
 from ..joint.overlap import node_marks
 from ..laws.area import area_laws, joint_statistics
@@ -33,11 +41,8 @@ from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
 from ..scan.other_readings import other_readings
 from ..states.contact_fields import contact_fields
-from ..states.elimination import elimination_alone
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
-from ..states.registration_spread import registration_spread, registration_values
-from ..states.scan_spread import reading_values, scan_spread, wider_spread
 from ..states.states import (
     DIP,
     chosen_offset,
