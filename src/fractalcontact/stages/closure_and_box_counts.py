@@ -19,7 +19,6 @@ from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.closure_constants import closure_constants
 from ..error_budget.elimination import elimination_alone
 from ..error_budget.error_budget import error_budget
-from ..error_budget.slid_variants import slid_variants
 from ..error_budget.solve_plan import solve_plan
 from ..error_budget.two_scans import (
     reading_values,
@@ -36,6 +35,7 @@ from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warni
 from ..laws.contact_strength import SAMPLED_BY
 from ..laws.reference_states import solve_reference_stiffness
 from ..laws.scan_errors import load_warning
+from ..laws.slid_variants import slid_variants
 from ..registration.registration_scatter import stored_motions
 from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
