@@ -22,7 +22,13 @@ from ..laws.seated_laws import at_reference_pressures
 from ..states.state_quantities import state_quantities
 from ..states.state_scalars import aperture
 from ..states.sweep import load_steps
-from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_dimension, chosen_loads
+from .refinement import (
+    BUDGET_QUANTITIES,
+    LoadCurve,
+    budget_dimension,
+    chosen_loads,
+    in_order,
+)
 
 _LOADS = ("normal_force",)
 _IF = f"if contacts are {HARDEST:g} times as hard; missing where they are elastic"
@@ -101,7 +107,7 @@ def _solved(
             continue
         place = int(np.searchsorted(curve.forces, every[number]))
         limits = loading.settings.box_range
-        values[:, place] = [*quantities.values(), budget_dimension(state, limits)]
+        values[:, place] = in_order(quantities, delta_sigma=budget_dimension(state, limits))
         gaps[place] = aperture(state).mean()
         if place in drawn:
             for way, flow in _flows(state, axes).items():
