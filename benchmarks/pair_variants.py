@@ -101,7 +101,7 @@ def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict
     )
     cells = loading.cells[np.argmin(abs(loading.offsets - wanted))]
     loading = loading.at(cells)
-    states = combine([contact_states(loading, [1, 2], mapped=cells)])
+    states = combine([contact_states(loading, [1, 2], map_cells=cells)])
     e_star = settings.material.e_star
     curves = closure_curves(states, window_sides(specimen), e_star).isel(direction=0, offset=0)
     (force,) = forces_of([settings.map_load], loading.area)

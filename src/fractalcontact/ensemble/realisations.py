@@ -196,8 +196,8 @@ def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings
 def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     """:data:`STATES` over the loads, and :data:`EXPONENTS`, of one realisation."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
-    mapped = int(loading.cells[0])
-    states = contact_states(loading, settings.resolutions, mapped=mapped, lightly=True)
+    map_cells = int(loading.cells[0])
+    states = contact_states(loading, settings.resolutions, map_cells=map_cells, lightly=True)
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
     place = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
@@ -225,7 +225,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         values[name] = curves[name].sel(place).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
-    composite = loading.composite(mapped)[::finest, ::finest]
+    composite = loading.composite(map_cells)[::finest, ::finest]
     slopes = null_slopes(touching, composite, cell, fit_range=fitted)
     reference = int(np.argmin(np.abs(result["normal_force"].values - _reference(loading))))
     sides = tuple(loading.spacing * finest)

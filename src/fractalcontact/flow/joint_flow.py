@@ -63,9 +63,9 @@ def joint_flow(
     composite = loading.composite(int(loading.at_map_offset().cells[0]))
     composite = prefractal(composite, reported.resolution)
     space = loading.half_space(composite.shape, reported.resolution)
-    at_maps = next(part for part in parts if MAP_GAP in part)
-    gaps = at_maps[MAP_GAP].values.astype(float)
-    crushed = _crushed_fractions(composite, space, states, at_maps, loading.solving["hardness"])
+    maps = next(part for part in parts if MAP_GAP in part)
+    gaps = maps[MAP_GAP].values.astype(float)
+    crushed = _crushed_fractions(composite, space, states, maps, loading.solving["hardness"])
     errors = {
         "separation": error_budget["total"].sel(quantity="separation").values,
         "mean_gap": error_budget["mean_gap_total_of_population"].values / states["mean_gap"].values,
@@ -110,15 +110,15 @@ def _both_ways(axes, spacing, gap):
     }
 
 
-def _crushed_fractions(composite, space, states, at_maps, hardness):
+def _crushed_fractions(composite, space, states, maps, hardness):
     """Volume pressed in for good over that of the gap left, over the loads.
 
-    ``at_maps`` has the fields of pressure and gap at the offset of the contact maps.
+    ``maps`` has the fields of pressure and gap at the offset of the contact maps.
     """
     if not np.isfinite(hardness):
         return np.zeros(states.sizes["normal_force"])
     clearance, fractions = composite.max() - composite, []
-    pressures, gaps = at_maps[MAP_PRESSURE].values, at_maps[MAP_GAP].values
+    pressures, gaps = maps[MAP_PRESSURE].values, maps[MAP_GAP].values
     for pressure, gap, closure in zip(pressures, gaps, states["closure"].values, strict=True):
         # The stored gap is 0 where a node yields: what is pressed in lies below.
         overlap = closure - clearance - space.displacement(pressure.astype(float))

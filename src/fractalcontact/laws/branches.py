@@ -165,10 +165,10 @@ KEPT_BOWL = (
 )
 
 
-def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset) -> xr.Dataset:
+def joint_branches(loading: JointLoading, curves: xr.Dataset, maps: xr.Dataset) -> xr.Dataset:
     """Branches of a joint at the reported offset, over the loads that closure laws are fitted to.
 
-    ``loading`` is at that offset alone, ``curves`` the stage ``closure``, ``mapped`` the fields by
+    ``loading`` is at that offset alone, ``curves`` the stage ``closure``, ``maps`` the fields by
     :func:`states.states.map_states`. Loads end at :data:`core.limits.SEATED_SPAN` times the seating
     pressure: a window that was loaded until all of it crushes tells nothing of a joint in use.
     """
@@ -181,7 +181,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     forces = curve["normal_force"].values
     composite = prefractal(loading.composite(int(cells)), factor)
     space = loading.half_space(composite.shape, factor)
-    loaded = stored_states(composite, space, curve, mapped, loading.solving["hardness"])
+    loaded = stored_states(composite, space, curve, maps, loading.solving["hardness"])
     where = f"specimen {loading.specimen.attrs['name']}"
     pressure = forces / loading.area
     further = np.empty(0) if space.is_free else further_pressures(pressure)

@@ -82,7 +82,7 @@ def state_stages(
     of this name, of twins of a scan or of realisations. The branches and the error budget solve
     some states again.
     """
-    states, mapped = combine(parts), map_states(parts)
+    states, maps = combine(parts), map_states(parts)
     spacing, area = cell_side(specimens), nominal_area(specimens)
     e_star = settings.material.e_star
     curves = closure_curves(
@@ -115,35 +115,35 @@ def state_stages(
         settings.map_offset,
     )
     fields = contact_domains(states)
-    domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
-    nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
-    domains = beside_domains(domains, nulls)
+    counts = analyse_domains(fields, spacing, fit_range=settings.box_range)
+    nulls = nulls_of_map_states(maps, spacing, joints["composite"], settings.box_range)
+    counts = beside_domains(counts, nulls)
     if DIP in dilatancy:
-        dilatancy.update(_of_sampling(domains, joints["composite"], loading))
+        dilatancy.update(_of_sampling(counts, joints["composite"], loading))
     left = left_of_fields(fields)
     fitted = settings.scaling_range
-    scaling = scaling_over_resolutions(curves, domains, spacing, left=left, fit_range=fitted)
+    scaling = scaling_over_resolutions(curves, counts, spacing, left=left, fit_range=fitted)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
         "area": laws,
-        "domains": domains,
+        "domains": counts,
         "contact": contact_fields(fields, parts, joints, settings, area).assign(
             node_marks(specimens, joints)
         ),
         "scaling": scaling.merge(extrapolated_pressure(scaling, float(np.sqrt(area)))),
-        "domain_measures": measures_of_map_states(mapped, spacing),
+        "domain_measures": measures_of_map_states(maps, spacing),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
     if joint.slides:
         variants = slid_variants(joint, reported.force)
         stages["dilatancy"] = stages["dilatancy"].assign(variants)
-    solve_reference_stiffness(loading, stages["closure"], mapped)
+    solve_reference_stiffness(loading, stages["closure"], maps)
     budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
-        "branches": joint_branches(loading, stages["closure"], mapped),
+        "branches": joint_branches(loading, stages["closure"], maps),
         "error_budget": with_pressure(budget, area).merge(elimination_alone(loading)),
         "choices": plan.assign(requested_accuracy(solver)),
     }
@@ -204,10 +204,10 @@ def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Repor
 
 
 def _of_sampling(
-    domains: xr.Dataset, composites: xr.DataArray, loading: JointLoading
+    counts: xr.Dataset, composites: xr.DataArray, loading: JointLoading
 ) -> dict[str, xr.DataArray]:
     """Variables of :data:`laws.contact_strength.SAMPLED_BY`; the amplitude is at one offset."""
-    clusters = domains["clusters"].sel(resolution=domains["resolution"].min(), drop=True)
+    clusters = counts["clusters"].sel(resolution=counts["resolution"].min(), drop=True)
     clusters = clusters.rename(direction="contact_direction")
     (offset,) = loading.offsets
     composite = states_at(composites, offset=offset).values
