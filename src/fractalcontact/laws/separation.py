@@ -97,7 +97,7 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")
     _add_closure_from(curves, common, "closure_from_common_seat")
-    stated = xr.full_like(seats, seat_of(force, lightest))
+    stated = xr.full_like(seats, float(seat_of(force, lightest)))
     _add_closure_from(curves, stated, "closure_from_stated_seat")
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:

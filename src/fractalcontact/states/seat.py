@@ -25,7 +25,7 @@ def seat_of(loads: ArrayLike, stated: float, decided: ArrayLike = True) -> np.nd
         In the unit of ``loads``.
     """
     loads = np.asarray(loads, float)
-    usable = decided & (loads >= stated * (1 - PRESSURE_ROUNDING))
+    usable = np.logical_and(decided, loads >= stated * (1 - PRESSURE_ROUNDING))
     lightest = np.where(usable, loads, np.inf).min(axis=-1, initial=np.inf)
     return np.where(np.isfinite(lightest), lightest, np.nan)
 
