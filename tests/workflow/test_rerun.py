@@ -61,8 +61,8 @@ def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
     assert first == f"{n} jobs; what is made goes to results/test"
     assert last.startswith(f"{n} jobs done in ")
     assert page.endswith("results/test/index.html")
-    assert [line.split("]")[0] for line in jobs] == [f"[{k}/{n}" for k in range(1, n + 1)]
-    assert any(line[6:].startswith("rock: contact states") for line in jobs)
+    assert [line.split("]")[0] for line in jobs] == [f"[{k:2}/{n}" for k in range(1, n + 1)]
+    assert any("] rock: contact states" in line for line in jobs)
     assert max(map(len, jobs)) <= 120
     crate = json.loads((finished / "results/test/ro-crate-metadata.json").read_text())
     entities = {entity["@id"]: entity for entity in crate["@graph"]}
