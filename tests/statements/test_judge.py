@@ -130,8 +130,18 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("voids_grow_with_size", {"void_exponent": 0.05}, UNDETERMINED),
         ("friction_angle_falls_with_size", {"slope_angles": [60, 60, 60, 60]}, FAILS),
         ("friction_angle_falls_with_size", {"slope_angles": [60, 50, 60, 50]}, UNDETERMINED),
-        # A truncated angle is a bound, and no case.
+        # A truncated angle of a small size is a bound: a fall is then sure, no fall is not.
+        ("friction_angle_falls_with_size", {"truncated": [0.2, 0.2, 0, 0]}, HOLDS),
+        (
+            "friction_angle_falls_with_size",
+            {"truncated": [0.2, 0, 0, 0], "slope_angles": [60, 60, 60, 60]},
+            UNDETERMINED,
+        ),
+        # Of large sizes it bounds nothing, and is left out.
+        ("friction_angle_falls_with_size", {"truncated": [0, 0, 0, 0.2]}, HOLDS),
         ("friction_angle_falls_with_size", {"truncated": 0.2}, UNDETERMINED),
+        # At 45 degrees two degrees per doubling are the margin of the strength.
+        ("friction_angle_falls_with_size", {"slope_angles": [50, 48.5, 47, 45.5]}, FAILS),
         ("lines_form_above_one", {"long_share": [0.1, 0.5, 0.3, 0.6]}, UNDETERMINED),
         ("lines_form_above_one", {"long_share": [0.3, 0.3, 0.31, 0.31]}, FAILS),
         ("lines_form_above_one", {"delta_sigma_box": [1.2, 1.3, 1.4, 1.5]}, UNDETERMINED),
@@ -436,6 +446,17 @@ def test_a_statement_the_specimen_was_chosen_for_is_marked():
     assert found["statement"].values[marked].tolist() == ["dilatancy_flattens"]
     assert found["circular_reason"].values[marked].tolist() == ["its seed"]
     assert found["verdict"].values[marked].tolist() == [HOLDS]
+
+
+@pytest.mark.parametrize("name", ["strength_falls_with_size", "friction_angle_falls_with_size"])
+@pytest.mark.parametrize("chosen", ["dilatancy_flattens", "dilatancy_is_anisotropic"])
+def test_strength_is_not_judged_on_a_specimen_that_was_chosen_for_its_dilatancy(name, chosen):
+    found = found_by(name, SETTINGS | {"chosen_for": {chosen: "the flattest of 350"}})
+    assert found.verdict == UNDETERMINED
+    assert found.numbers == found_by(name).numbers
+    assert found.note.endswith("the flattest of 350")
+    other = found_by(name, SETTINGS | {"chosen_for": {"no_correlation_is_left": "roll-off"}})
+    assert other.verdict == HOLDS
 
 
 # Several joints

@@ -181,10 +181,11 @@ def stages(**changes):
         windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
     angles = np.reshape(values["slope_angles"], (1, 4, 1)) + np.zeros((2, 1, 1))
     of_sizes = "share", "part", "normal_force"
+    truncated = np.reshape(np.broadcast_to(values["truncated"], 4), (1, 4, 1))
     windows |= {
         "side": ("part", [20.0, 10.0, 5.0, 2.5][::-1]),
         "limit_slope_angle": (of_sizes, angles),
-        "truncated_fraction_at_equal_v_over_b": (of_sizes, np.full((2, 4, 1), values["truncated"])),
+        "truncated_fraction_at_equal_v_over_b": (of_sizes, np.broadcast_to(truncated, (2, 4, 1))),
         "face_hurst_b_min": 0.2,
         "face_hurst_b_max": 2.0,
     }

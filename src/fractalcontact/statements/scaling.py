@@ -17,6 +17,7 @@ from .findings import (
     beyond_margin,
     margin_words,
     of_the_area,
+    of_unchosen_dilatancy,
     share,
     trend_over_sizes,
     within_margin,
@@ -352,6 +353,7 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
     return trend_over_sizes(name, exponent, f"x = {number(exponent)}", source, rising=False)
 
 
+@of_unchosen_dilatancy
 def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size at equal v/b, as laboratories compare sizes.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.fitting import fit_line
+from ..core.fitting import slope_with_bounds
 from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .evidence import Evidence, of_a_kind
@@ -16,6 +16,7 @@ from .findings import (
     beyond_margin,
     difference_of,
     margin_words,
+    of_unchosen_dilatancy,
     trend_over_sizes,
     within_margin,
 )
@@ -75,19 +76,20 @@ def voids_grow_with_size(joint: Joint, evidence: Evidence) -> Finding:
     return trend_over_sizes("voids_grow_with_size", exponent, numbers, source, rising=True)
 
 
+@of_unchosen_dilatancy
 def friction_angle_falls_with_size(joint: Joint) -> Finding:
     """Change of the limit slope angle atan(tau/sigma_0) per doubling of b, at equal v/b.
 
-    Every v/b and load with three sizes or more is a case, if no angle was truncated. The claim
-    holds where the angle falls by more than the margin in every case, in part where it falls in
-    some, and fails where it falls in none and some case shows no fall beyond the margin.
+    A tilted block presses its joint by its weight alone, so that the lightest load is judged; every
+    v/b with three sizes or more is a case. An angle that is truncated is a lower bound: a change is
+    then the largest that the bounds allow. The claim holds where the angle falls by more than the
+    margin in every case, in part where it falls in some, and fails where it falls in none and some
+    case shows no fall beyond the margin. At 45 degrees the margin is that of the strength.
     """
     name = "friction_angle_falls_with_size"
     slopes = _angle_slopes(joint)
     if not slopes:
-        return Finding(
-            UNDETERMINED, "no v/b has three sizes of window whose angles are not truncated"
-        )
+        return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
     margin = all_claims()[name].margin
     verdicts = [beyond_margin(slope, margin, rising=False) for slope in slopes]
     falls = verdicts.count(HOLDS) + verdicts.count(PARTLY)
@@ -97,28 +99,27 @@ def friction_angle_falls_with_size(joint: Joint) -> Finding:
     ends = " to ".join(
         dict.fromkeys(f"{number(end, 1, '+')}" for end in (min(values), max(values)))
     )
+    bounded = sum(bool(np.isneginf(slope.low)) for slope in slopes)
+    lightest = joint["windows"]["nominal_pressure"].values.min()
     return Finding(
         HOLDS if verdicts.count(HOLDS) == cases else verdict,
         f"the angle falls at equal v/b in {falls or 'none'} of {cases} cases",
-        f"it changes by {ends} degrees per doubling of b; margin {compact(margin, 6)} degree"
-        f"{f'; it surely does not fall in {no_fall}' if no_fall else ''}",
+        f"it changes by {ends} degrees per doubling of b at {compact(lightest)} MPa; margin "
+        f"{compact(margin, 6)} degrees"
+        f"{f'; it surely does not fall in {no_fall}' if no_fall else ''}"
+        f"{f'; bounds from above in {bounded} cases with truncated angles' if bounded else ''}",
     )
 
 
 def _angle_slopes(joint: Joint) -> Sequence[Estimate]:
-    """Slopes of the limit slope angle over log2 b, degrees, of the cases without truncation."""
+    """Slopes of the limit slope angle over log2 b, degrees, under the lightest load, by v/b."""
     laws = joint["windows"]
-    order = ("share", "normal_force", "part")
-    angle = laws["limit_slope_angle"].transpose(*order).values
-    truncated = laws["truncated_fraction_at_equal_v_over_b"].transpose(*order).values
-    exponents = laws["strength_at_equal_v_over_b_exponent"]
-    fitted = np.isfinite(exponents.transpose(*order[:2]).values)
+    laws = laws.isel(normal_force=int(np.argmin(laws["normal_force"].values)))
+    laws = laws.transpose("share", "part", ...)
+    angle, truncated = (
+        laws[name].values for name in ("limit_slope_angle", "truncated_fraction_at_equal_v_over_b")
+    )
+    fitted = np.isfinite(laws["strength_at_equal_v_over_b_exponent"].values)
     doublings = np.log2(laws["side"].values)
-    slopes = []
-    for case in np.argwhere(fitted):
-        at = tuple(case)
-        counts = np.isfinite(angle[at])
-        if not (truncated[at][counts] > 0).any():
-            slope = fit_line(doublings, angle[at]).slope
-            slopes += [slope] if slope.known else []
-    return slopes
+    cases = (slope_with_bounds(doublings, angle[i], truncated[i] > 0) for i in np.flatnonzero(fitted))
+    return [slope for slope in cases if slope.known]
