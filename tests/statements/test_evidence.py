@@ -170,6 +170,8 @@ def test_an_ensemble_as_the_paper_has_it(name):
         ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 5, 6, 9]}, FAILS),
         ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 4.35, 4.4, 9]}, UNDETERMINED),
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4.1, 4.1, 4.1]}, FAILS),
+        # A rise without a plateau before is no second one.
+        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4.6, 5.2, 8]}, FAILS),
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4.1, 4.1, 4.475]}, PARTLY),
         ("composite_dimension_rises", {"lag": np.linspace(2.9, 2.35, 7)}, FAILS),
         ("compliance_goes_with_dimension", {"lag": np.linspace(2.9, 2.35, 7)}, FAILS),
