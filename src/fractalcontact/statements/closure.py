@@ -70,21 +70,18 @@ def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
         return finding
     percent = number(unrelated.mapped(lambda end: 100 * end), 0)
     lost = compact(v[joint.unrelated(v)][0])
-    return finding._replace(
-        explanation=f"from v = {lost} mm on, where two unrelated faces meet, it varies by {percent} %"
-    )
+    words = f"from v = {lost} mm on, where two unrelated faces meet, it varies by {percent} %"
+    return finding._replace(explanation=words)
 
 
 #: Reason why no stretch of offsets is judged.
 _NO_STRETCH = (
-    f"no three offsets from v to {compact(MIN_SPREAD, 6)} v that begin beyond the correlation length "
-    "while the faces correlate"
+    f"no three offsets from v to {compact(MIN_SPREAD, 6)} v that begin beyond the correlation "
+    "length while the faces correlate"
 )
 
 
-def _levels(
-    joint: Joint, evidence: Evidence, force: float
-) -> list[tuple[np.ndarray, Finding]]:
+def _levels(joint: Joint, evidence: Evidence, force: float) -> list[tuple[np.ndarray, Finding]]:
     """Stretches of offsets (n,) bool, and whether the compliance is level there under a load."""
     v, margin = evidence.offsets(), all_claims()["curves_overlap"].margin
     beyond = joint.between(v) | joint.unrelated(v)
@@ -105,10 +102,10 @@ def compliance_rises_again(joint: Joint, evidence: Evidence) -> Finding:
     """Rise of the compliance after a plateau, as the correlation of the faces is lost.
 
     A plateau is a stretch of offsets on which the curves overlap, by the rule of that claim. The
-    mean logarithm over the later offsets without correlation is compared with that over the plateau:
-    the claim holds where the interval of the rise lies above the margin, and fails where the
-    compliance rises all along, without a plateau, or not at all. One specimen is judged at every
-    load, realisations at the reference load.
+    mean logarithm over the later offsets without correlation is compared with that over the
+    plateau: the claim holds where the interval of the rise lies above the margin, and fails where
+    the compliance rises all along, without a plateau, or not at all. One specimen is judged at
+    every load, realisations at the reference load.
     """
     return under_every_load(
         joint, lambda force: _rises_again(joint, evidence, force), evidence.judged_forces
@@ -134,7 +131,8 @@ def _rises_again(joint: Joint, evidence: Evidence, force: float) -> Finding:
         words = {HOLDS: "after a plateau", FAILS: "without a plateau before"}
         before = words.get(plateau.verdict, "after what may be a plateau")
         percent = number(change.mapped(lambda end: 100 * end), 0, "+")
-        note = f"before, {plateau.numbers}, {plateau.note}; after, v = {compact(v[after][0])} mm and more"
+        later = f"after, v = {compact(v[after][0])} mm and more"
+        note = f"before, {plateau.numbers}, {plateau.note}; {later}"
         findings.append(Finding(verdict, f"compliance {percent} %, {before}", note))
     order = (HOLDS, PARTLY, UNDETERMINED, FAILS)
     nothing = Finding(UNDETERMINED, f"{_NO_STRETCH}, or no later offset without correlation")

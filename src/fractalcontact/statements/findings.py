@@ -150,7 +150,9 @@ def of_unchosen_dilatancy(check: Callable[[Joint], Finding]) -> Callable[[Joint]
     @wraps(check)
     def asked(joint):
         finding = check(joint)
-        chosen = [how for name, how in joint.settings["chosen_for"].items() if name in _OF_DILATANCY]
+        chosen = [
+            how for name, how in joint.settings["chosen_for"].items() if name in _OF_DILATANCY
+        ]
         if not chosen or finding.verdict == UNDETERMINED:
             return finding
         why = f"the strength is that of its dilatancy, for which it was chosen: {chosen[0]}"

@@ -74,6 +74,8 @@ def resolve_settings(
         "twins": layers.twins(),
         "block_lengths": sorted(said.get("block_lengths", [])),
         "capped_variant": is_capped_variant(config, name),
+        # Its contact has a known dimension by construction: a control, and no joint.
+        "known_contact": recipe.get("construction") == "cantor-punch",
         "material": material,
         "boundary": said.get("boundary", layers.boundary()),
         "opposite": opposite,
