@@ -33,7 +33,7 @@ QUOTED = {
     "fig08_prefractals": {"area_is_lacunar"},
     "fig09_box_counting": {"domains_are_fractal"},
     "fig10_scaling": {"area_is_lacunar"},
-    "fig11_slope_angle": {"strength_falls_with_size"},
+    "fig11_slope_angle": {"friction_angle_falls_with_size"},
     "fig12_evolution": {"dimension_rises_by_area", "dimension_rises_by_boxes"},
     "fig13_size_effect": {"dimension_rises_by_area", "dimension_rises_by_boxes"},
     "area_theories": {"area_is_linear"},

@@ -486,7 +486,7 @@ def test_a_statement_the_specimen_was_chosen_for_is_marked():
 def test_strength_is_not_judged_on_a_specimen_that_was_chosen_for_its_dilatancy(name, chosen):
     found = found_by(name, SETTINGS | {"chosen_for": {chosen: "the flattest of 350"}})
     assert found.verdict == UNDETERMINED
-    assert found.numbers == found_by(name).numbers
+    assert found.numbers.startswith(found_by(name).numbers)
     assert found.note.endswith("the flattest of 350")
     other = found_by(name, SETTINGS | {"chosen_for": {"no_correlation_is_left": "roll-off"}})
     assert other.verdict == HOLDS

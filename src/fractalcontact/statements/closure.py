@@ -128,12 +128,12 @@ def _rises_again(joint: Joint, evidence: Evidence, force: float) -> Finding:
             verdict = FAILS
         elif plateau.verdict == HOLDS:
             verdict = rises
-        words = {HOLDS: "after a plateau", FAILS: "without a plateau before"}
+        words = {HOLDS: "after a plateau", FAILS: "without a plateau before,"}
         before = words.get(plateau.verdict, "after what may be a plateau")
         percent = number(change.mapped(lambda end: 100 * end), 0, "+")
         later = f"after, v = {compact(v[after][0])} mm and more"
         note = f"before, {plateau.numbers}, {plateau.note}; {later}"
-        findings.append(Finding(verdict, f"compliance {percent} %, {before}", note))
+        findings.append(Finding(verdict, f"{before} compliance changes by {percent} %", note))
     order = (HOLDS, PARTLY, UNDETERMINED, FAILS)
     nothing = Finding(UNDETERMINED, f"{_NO_STRETCH}, or no later offset without correlation")
     return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)

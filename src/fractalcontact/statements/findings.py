@@ -155,8 +155,9 @@ def of_unchosen_dilatancy(check: Callable[[Joint], Finding]) -> Callable[[Joint]
         ]
         if not chosen or finding.verdict == UNDETERMINED:
             return finding
-        why = f"the strength is that of its dilatancy, for which it was chosen: {chosen[0]}"
-        return finding._replace(verdict=UNDETERMINED, note=f"{finding.note}; {why}")
+        numbers = f"{finding.numbers}, but the specimen was chosen for its dilatancy"
+        note = f"{finding.note}; {chosen[0]}"
+        return finding._replace(verdict=UNDETERMINED, numbers=numbers, note=note)
 
     return asked
 
