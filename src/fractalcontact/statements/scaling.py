@@ -154,8 +154,8 @@ def _measured_slopes(joint: Joint) -> str:
 
 
 def _known_loads(estimate: Estimate, pressures: np.ndarray) -> list[tuple[Estimate, float]]:
-    """Estimates and nominal pressures, MPa, of the loads that have one."""
-    return [(estimate[i], pressures[i]) for i in np.flatnonzero(estimate.known)]
+    """Estimates and nominal pressures, MPa, of the loads that have one with an interval."""
+    return [(estimate[i], pressures[i]) for i in np.flatnonzero(np.isfinite(estimate.width))]
 
 
 @of_the_area
