@@ -171,7 +171,7 @@ class _Solved(SubWindows):
         area = state.space.cell_area * rows * columns
         flush, settlement = self.flush[window], self.settlement[step]
         errors, stiffness = state_errors(state, state.slope), state.stiffness
-        nodes = np.count_nonzero(state.in_contact)
+        nodes = int(np.count_nonzero(state.in_contact))
         numbers = {
             "closure": state.closure,
             "interface_closure": interface_closure(state.closure, settlement, flush),
