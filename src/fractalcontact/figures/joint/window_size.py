@@ -110,11 +110,12 @@ def _draw_contact(panel: kit.Panel, laws: xr.Dataset) -> None:
 def _words(atlas: DataTree, name: str, laws: xr.Dataset, surface: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: H of sigma_z, that of eq. 2, the claim on larger samples."""
     of_windows = surface.sel(estimator=str(surface["recommended"].item()))
+    hurst = Estimate.read(of_windows, "hurst", scale=EXPONENT)
     force = float(atlas[f"statements/{name}"].attrs["force"])
     judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
     fitted = laws["compliance_exponent"].notnull().any()
     return {
-        "hurst": Estimate.read(of_windows, "hurst", scale=EXPONENT),
+        "hurst": hurst if laws["face_hurst"].notnull() else Estimate(),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
         "claim": kit.claim(
             atlas, name, _CLAIM, why=f"at {pressure_label(float(judged))}" if fitted else ""
