@@ -257,6 +257,12 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
             f"{where}.roll_off: a surface by {construction} has none; write null, or the "
             "construction spectrum"
         )
+    for key, plain in (("anisotropy", 1), ("intermittency", 0)):
+        if construction != "spectrum" and numbers[key] != plain:
+            raise InputError(
+                f"{where}.{key}: a surface by {construction} has none; leave it out, or write the "
+                "construction spectrum"
+            )
     if construction == "cantor-punch" and 3 ** round(math.log(nodes, 3)) != round(nodes):
         raise InputError(
             f"{where}.size: a cantor-punch has 3^n nodes per side, not {round(nodes)}; "
@@ -273,9 +279,18 @@ def resolve_roll_off(config: Mapping, source: str) -> dict:
     if name not in embedded:
         raise InputError(f"{where}.embedded: no embedded {name!r}{nearest(name, embedded)}")
     recipe = resolve_embedded(embedded[name], f"{source}: embedded.{name}")
-    if recipe["roll_off"] is None:
-        raise InputError(f"{where}.embedded: {name} has no roll_off; name one that has")
     parsed = validate(RollOffKeys, stated, source, "roll_off")
+    if recipe["construction"] != "spectrum":
+        raise InputError(
+            f"{where}.embedded: {name} is made by {recipe['construction']}, which has no roll-off; "
+            "name one of the construction spectrum"
+        )
+    if parsed.roll_off is not None:
+        recipe["roll_off"] = parsed.roll_off
+    if recipe["roll_off"] is None:
+        raise InputError(
+            f"{where}.roll_off: missing, as {name} has none; write a length, such as '5 mm'"
+        )
     return {"recipe": recipe, "window": parsed.window, "seeds": parsed.seeds}
 
 
