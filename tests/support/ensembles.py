@@ -80,7 +80,7 @@ ENSEMBLES: dict[str, tuple] = {
     # surface
     "synthetic seeds": (8, 20),
     "uneven surfaces": (16, 64),
-    "realisations of a twin": (3, 24),
+    "faces like fractured rock": (3, 12),
     "edge pairs": (20, 40),
     "outlier surfaces": ((200, (1, 2)), (400, (1, 2))),
     "extruded profiles": ((512, 8), (1024, 10)),

@@ -279,18 +279,9 @@ def resolve_roll_off(config: Mapping, source: str) -> dict:
     if name not in embedded:
         raise InputError(f"{where}.embedded: no embedded {name!r}{nearest(name, embedded)}")
     recipe = resolve_embedded(embedded[name], f"{source}: embedded.{name}")
-    parsed = validate(RollOffKeys, stated, source, "roll_off")
-    if recipe["construction"] != "spectrum":
-        raise InputError(
-            f"{where}.embedded: {name} is made by {recipe['construction']}, which has no roll-off; "
-            "name one of the construction spectrum"
-        )
-    if parsed.roll_off is not None:
-        recipe["roll_off"] = parsed.roll_off
     if recipe["roll_off"] is None:
-        raise InputError(
-            f"{where}.roll_off: missing, as {name} has none; write a length, such as '5 mm'"
-        )
+        raise InputError(f"{where}.embedded: {name} has no roll_off; name one that has")
+    parsed = validate(RollOffKeys, stated, source, "roll_off")
     return {"recipe": recipe, "window": parsed.window, "seeds": parsed.seeds}
 
 

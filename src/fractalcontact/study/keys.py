@@ -161,12 +161,8 @@ class SidecarKeys(SettingsKeys, ScanKeys):
 class RollOffKeys(Section):
     """Synthetic joints with and without a roll-off."""
 
-    embedded: Annotated[str, key("name of an embedded specimen")]
-    """the specimen whose recipe is used"""
-    roll_off: Annotated[
-        PositiveLength | None, key("a length", unsaid="the `roll_off` of the specimen")
-    ] = None
-    """roll-off of the joints that have one (default: that of the specimen)"""
+    embedded: Annotated[str, key("name of an embedded specimen with a roll_off")]
+    """the specimen whose recipe is used; it must have a `roll_off`"""
     window: Length
     """side of the window"""
     seeds: Seeds

@@ -16,6 +16,7 @@ from ..core.mean_plane import without_mean_plane
 #: is periodic on that grid; with two, opposite edges of the patch are as far apart as they look.
 EMBEDDING = 2
 
+
 def self_affine(
     shape: tuple[int, int],
     spacing: float,
