@@ -84,13 +84,13 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
     values_of_fits = values_of_fits[np.isfinite(values_of_fits)]
     x, y = (Estimate.read(dimensions, f"hurst_{axis}") for axis in "xy")
     compared = x.known & y.known
-    apart = compared & ((x.low > y.high) | (y.low > x.high))
+    differing = compared & ((x.low > y.high) | (y.low > x.high))
     values = {
         "dimensions_fitted": values_of_fits.size,
         "lowest_dimension": min(values_of_fits, default=np.nan),
         "highest_dimension": max(values_of_fits, default=np.nan),
         "axes_compared": np.sum(compared),
-        "axes_differing": np.sum(apart),
+        "axes_differing": np.sum(differing),
     }
     return labelled({name: ((), "1", words) for name, words in _OF_ALL.items()}, values)
 

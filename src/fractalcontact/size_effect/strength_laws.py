@@ -89,9 +89,9 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         np.any(_at_fractions(offset, side.values, intervals) > 0, axis=2)
         for intervals in (truncated, raised)
     )
-    apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
+    in_steps = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
     strengths = result["strength_at_equal_v_over_b"]
-    strengths = strengths.where(apart & strengths.copy(data=~at_most))
+    strengths = strengths.where(in_steps & strengths.copy(data=~at_most))
     name = "strength_at_equal_v_over_b"
     bounds = strengths.copy(data=at_least)
     curves = {"strength": strengths, "bound": bounds, "side": side}
@@ -101,7 +101,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     )
     name = "slope_at_equal_v_over_b"
     words = f"exponent of {name} against b"
-    add_law(result, f"{name}_exponent", side, result[name].where(apart), words)
+    add_law(result, f"{name}_exponent", side, result[name].where(in_steps), words)
     of_truncated = {
         "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
         "truncated_fraction_at_equal_v_over_b": mean_interval(
