@@ -344,6 +344,7 @@ class ReportSettings(StrengthSettings):
     figures and in `study_comparison` of the atlas"""
     chosen_for: dict[str, str]
     capped_variant: bool
+    known_contact: bool
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..laws.closure import interface_states
 from ..size_effect.division import solvable_parts, spread_windows
+from ..size_effect.laws import RANDOM_VOID
 from ..size_effect.size_exponents import of_usable_sizes, size_exponent
 from ..size_effect.size_law import WINDOW_QUANTITIES
 from ..size_effect.windows import solved_windows
@@ -82,6 +83,7 @@ EXPONENTS = {
     "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch"),
     "roughness_exponent": ("sigma_z", RESOLVED_NODES, "rms height about the own plane"),
     "void_exponent": ("largest_void", RESOLVED_NODES, "largest void"),
+    "random_void_exponent": ("random_void", RESOLVED_NODES, RANDOM_VOID),
 }
 
 

@@ -16,6 +16,8 @@ from .fit_range import LAST_OF_ROLL_OFF
 
 #: The estimator whose value is the answer.
 RECOMMENDED = "roughness_length"
+#: An estimator that rests on other properties of the heights than sigma_z of windows.
+INDEPENDENT = "power_spectrum"
 #: Reason of the choice: on 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9,
 #: its rms error is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum
 #: 0.052), and half its interval 0.12 (0.13, 0.22, 0.14).
@@ -61,6 +63,23 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
         else ": not self-affine over the lags fitted"
     )
     return Estimate(reason=reason)
+
+
+def exponent_of_roughness(dimensions: xr.Dataset) -> Estimate:
+    """Exponent H of sigma_z ~ b^H: the one that roughness-length windows have."""
+    if RECOMMENDED not in dimensions["estimator"].values:
+        return Estimate()
+    return Estimate.read(dimensions.sel(estimator=RECOMMENDED), "hurst")
+
+
+def independent_dimension(dimensions: xr.Dataset) -> Estimate:
+    """Delta_g that does not come from sigma_z ~ b^H: the known one, or that of the spectrum."""
+    known = float(dimensions["known_dimension"])
+    if np.isfinite(known):
+        return Estimate(known, known, known)
+    if INDEPENDENT not in dimensions["estimator"].values:
+        return Estimate()
+    return Estimate.read(dimensions.sel(estimator=INDEPENDENT), "dimension")
 
 
 #: Variables of all estimators together: long names.

@@ -21,6 +21,7 @@ from ..core.keys import (
     matching,
     schema_of,
 )
+from ..core.limits import MOST_INTERMITTENT
 from ..core.settings import Settings
 from ..core.tolerance import ACCURACY
 from ..core.units import share_of
@@ -134,6 +135,17 @@ class EmbeddedKeys(Section):
     ] = None
     """wavelength above which the spectrum is flat; `null` for none, as it is for all other
     constructions"""
+    anisotropy: Annotated[
+        float, key("distance along y over that along x, from 0.1 to 10", ge=0.1, le=10)
+    ] = 1.0
+    """of a `spectrum`: distance along y over the distance along x within which heights differ as
+    much (default 1: isotropic). The rms slope along x is that along y times `anisotropy` to the
+    power H"""
+    intermittency: Annotated[
+        float, key(f"from 0 to {MOST_INTERMITTENT}", ge=0, le=MOST_INTERMITTENT)
+    ] = 0.0
+    """of a `spectrum`: how unevenly roughness is spread over the face. 0 (default) is a Gaussian
+    surface; 0.15 gives the heavy-tailed slopes of a granite face ([Twins](../docs/twins.md))"""
     seed: Seed
     """the same seed gives the same bits; a `cantor-punch` has no chance in it"""
     realisations: Annotated[int, key("surfaces of the ensemble, from 3 to 1000", ge=3, le=1000)] = 0
