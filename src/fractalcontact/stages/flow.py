@@ -15,6 +15,7 @@ from ..core.settings import JointSettings, Solver
 from ..core.window import nominal_area
 from ..flow.aperture import (
     PERMEABILITY,
+    PERMEABILITY_RANGE,
     QUANTILES,
     barton_aperture,
     crushed_reason,
@@ -27,6 +28,8 @@ from ..flow.cubic_law import WAYS, flow_of, grid_error, window_interval
 from ..flow.network import hydraulic_aperture
 from ..joint.joint import prefractal, sliding_axis
 from ..joint.jrc import profile_roughness
+from ..laws.branches import KEPT_BOWL
+from ..laws.scan_errors import on_sound_cells
 from ..states.loading import JointLoading
 from ..states.state_scalars import aperture
 from ..states.states import MAP_GAP, MAP_PRESSURE, OFFSET_GAP, with_pressure
@@ -96,6 +99,8 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         for name, of_law in PERMEABILITY.items()
         for row, words in rows_of(name, *of_law).items()
     },
+    **{name: ((), *words) for name, words in PERMEABILITY_RANGE.items()},
+    "branch_reason": ("branch", "1", "why a branch has neither gaps nor flow"),
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
     "crushed_fraction": (_LOADS, "1", "volume of crushed rock over that of the gap left"),
     "shifted_ratio": (
@@ -175,12 +180,14 @@ def flow_stages(
         "unloaded": both(composite.max() - composite),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
-    laws = [
-        permeability_law(states["nominal_pressure"].values, flows)
-        for flows in values[f"branch_transmissivity_{WAYS[0]}"]
-    ]
+    law = permeability_law(
+        states["nominal_pressure"].values,
+        values[f"branch_transmissivity_{WAYS[0]}"],
+        on_sound_cells(states).values,
+    )
     for name in PERMEABILITY:
-        values |= Estimate.stack([law[name] for law in laws]).columns(name)
+        values |= law.pop(name).columns(name)
+    values |= law
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],
@@ -344,7 +351,11 @@ def _separation_error(gap, flow, total):
 
 
 def _of_branches(composite, space, loading, branches, both, loaded):
-    """Numbers of all branches: as given on loading; on the others NaN above the largest load."""
+    """Numbers of all branches: as given on loading; on the others NaN above the largest load.
+
+    A free window that has crushed keeps the bowl of its own settlement when it is unloaded: its
+    gaps are those of a loose square, and have no number on unloading and reloading.
+    """
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
     values = {
@@ -353,8 +364,13 @@ def _of_branches(composite, space, loading, branches, both, loaded):
     }
     for over_branches in values.values():
         over_branches[1:, forces > top] = np.nan
+    values["reason"] = np.full(branches.sizes["branch"], "", object)
+    if held.any() and space.is_free:
+        values["reason"][1:] = KEPT_BOWL
+        for name in loaded:
+            values[name][1:] = np.nan
     # A joint that has not crushed unloads and reloads along its loading curve.
-    if held.any():
+    elif held.any():
         descending, elastic = np.flatnonzero(forces <= top)[::-1], {"rtol": loading.solver.rtol}
         where = f"specimen {loading.specimen.attrs['name']}, unloading"
         states = load_steps(composite - held, space, forces[descending], elastic, where)
