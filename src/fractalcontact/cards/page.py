@@ -114,7 +114,7 @@ def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dic
 
 
 def permeability_words(entries: Mapping[str, Any]) -> str:
-    """Constants of the permeability over pressure by branch, with their range; empty without any."""
+    """Constants of the permeability over pressure by branch, and their range; empty without any."""
     curves = [entries.get(f"permeability_{name}", {}) for name in ("k_0", "alpha")]
     by_branch = {
         k_0["at"]["branch"]: [_constant(one) for one in (k_0, alpha)]

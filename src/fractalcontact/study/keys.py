@@ -470,7 +470,8 @@ class StudyKeys(Section):
     have one material: E\* = E / (2 (1 - nu²)). Shear strength needs the angle and the strength
     (`30 deg`, `80 MPa`: Barton's JCS); without them it is missing. `basic_friction_angle_is` is
     `measured`, on flat faces of this rock (strength within 13 %), or `assumed` (the default: 0.9
-    to 1.9 times). `hardness` (`80 MPa`) caps the pressure: an
+    to 1.9 times by Barton's law, 5 degrees by the other rules).
+    `hardness` (`80 MPa`) caps the pressure: an
     elastic-perfectly plastic surface, whose contacts crush; `none` is elastic contact. By
     default it is the joint wall strength for scans that state one, and none for embedded
     specimens, as the paper's model is elastic"""

@@ -89,7 +89,8 @@ class States {
   }
   /** Whether the result page calls a number undetermined: "interval" or "scan" decides, "" if not. */
   undetermined(key, place) {
-    if (this.at(`undetermined/${key}`, place) === 1) return "interval";
+    const most = this.raw.most[key] * Math.abs(this.at(key, place));
+    if (this.at(`undetermined/${key}`, place) === 1 || this.total(key, place) > most) return "interval";
     const says = (rows, mask) => this.raw[rows].includes(key) && this.at(`undetermined/${mask}`, place) === 1;
     return says("of_joint", "by_scan") || says("of_touch", "at_touch") ? "scan" : "";
   }
