@@ -13,6 +13,7 @@ import yaml
 
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, IN_PLANE, SIZE, Estimate, names_of
+from ..core.limits import JRC_SAMPLING
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
 from ..core.verdicts import TOO_WIDE
@@ -227,6 +228,11 @@ def read(row: Row, subject: Subject) -> list[Number]:
     if array is None:
         return [Number({}, Estimate(), row.absent or row.missing)]
     return list(_numbers(row, subject, array))
+
+
+def is_of_law(at: Mapping[str, Any], direction: str) -> bool:
+    """True of the labels of the JRC that Barton's law takes: its step, along a direction."""
+    return bool(at["sampling"] == JRC_SAMPLING and at["direction"] == direction)
 
 
 def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:

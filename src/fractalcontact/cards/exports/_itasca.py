@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.limits import JRC_RANGE, JRC_SAMPLING
+from ...core.limits import JRC_RANGE
 from ...core.text import exact, short
-from ..entries import reference_of, row_at
+from ..entries import jrc_of_law, reference_of, row_at
 from .constants import TO_SI, Constants, head_of, in_words
 
 #: Rule for the shear stiffness, which no contact state has.
@@ -63,18 +63,10 @@ def constants_of(card: Mapping[str, Any], names: Names) -> Constants:
 
 def _add_shear_stiffness(card, names, constants, strength):
     """Shear stiffness by an empirical rule, where the card has what the rule needs."""
-    jrc = next(
-        (
-            row["value"]
-            for row in card["entries"]["jrc"].get("values", ())
-            if row["at"]["sampling"] == JRC_SAMPLING
-            and row["at"]["direction"] == card["direction"]
-            and JRC_RANGE[0] < row.get("value", -1.0) <= JRC_RANGE[1]
-        ),
-        None,
-    )
-    if jrc is None or "value" not in strength:
-        lacks = "a JRC of Barton's range" if jrc is None else "a peak strength"
+    jrc = jrc_of_law(card).get("value", -1.0)
+    in_range = JRC_RANGE[0] < jrc <= JRC_RANGE[1]
+    if not in_range or "value" not in strength:
+        lacks = "a peak strength" if in_range else "a JRC of Barton's range"
         constants.left_out[names.shear] = f"not computed; the empirical rule needs {lacks}"
         return
     window = card["geometry"]
