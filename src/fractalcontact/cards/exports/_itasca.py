@@ -2,6 +2,8 @@
 
 Friction and dilation are those under the reference load. The codes take one number each, and the
 strength of the joint is no straight line over the pressure: the tables have what it is elsewhere.
+
+Sources: docs/other_codes.md, "Constants for the codes of Itasca".
 """
 
 import math
@@ -14,9 +16,11 @@ from ...core.text import exact, short
 from ..entries import jrc_of_law, reference_of, row_at
 from .constants import TO_SI, Constants, head_of, in_words
 
-#: Rule for the shear stiffness, which no contact state has.
+#: Rule for the shear stiffness, which no contact state has. Public code quotes the displacement of
+#: Barton, Bandis and Bakhtar (1985), L in m; neither that paper nor the one of 1990 was read.
 _SHEAR_RULE = (
-    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis 1990"
+    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis 1990, "
+    "as quoted, not read in the source"
 )
 
 
@@ -30,6 +34,8 @@ class Names:
     friction: str
     dilation: str
     cohesion: str
+    table: str = "table"
+    """Command of a table, which later versions know by its name."""
 
 
 def constants_of(card: Mapping[str, Any], names: Names) -> Constants:
@@ -113,5 +119,5 @@ def text_of(card: Mapping[str, Any], names: Names, before: str, command: str) ->
         unit = "Pa/m" if name == "normal_stiffness" else "degrees"
         lines.append(f"; {name} ({unit}) over the nominal pressure (Pa), for a FISH function")
         points = " ".join(f"({exact(x)},{exact(y)})" for x, y in pairs)
-        lines.append(f"table '{card['name']}_{name}' add {points}")
+        lines.append(f"{names.table} '{card['name']}_{name}' add {points}")
     return "\n".join(lines) + "\n"
