@@ -1,10 +1,14 @@
 """Columns of a table that a published number fills: one rule for their names."""
 
+import math
 import re
 from typing import Any
 
 from ..core.estimate import Estimate, column_of
 from .published import Number, Row
+
+#: Numbers that stand beside a value.
+_ERRORS = ("error", "population", "hardest")
 
 
 def columns_of(row: Row, number: Number) -> dict[str, Any]:
@@ -14,7 +18,8 @@ def columns_of(row: Row, number: Number) -> dict[str, Any]:
     NAME_error alone is the solver error bound, as in the atlas and the tables of figures.
     """
     name = _column(row, number)
-    number = Number(number.at, Estimate(), number.missing) if number.missing else number
+    if number.missing:
+        number = number._replace(estimate=Estimate(), **dict.fromkeys(_ERRORS, math.nan))
     fields = {"": number.value}
     if row.uncertain:
         fields |= {"low": number.estimate.low, "high": number.estimate.high}
