@@ -324,7 +324,7 @@ def test_the_permeability_has_its_range_and_says_what_is_undetermined():
     }
     words = permeability_words(entries)
     assert "from 1 to 10 MPa" in words
-    assert "on loading k_0 = 0.0002 [0.00018, 0.00022], alpha = undetermined" in words
+    assert "on loading k_0 = 0.0002 [0.000180, 0.000220], alpha = undetermined" in words
     assert "reloading" not in words
     assert permeability_words({}) == ""
 

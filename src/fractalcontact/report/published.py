@@ -101,7 +101,7 @@ class Row:
     budget: str = ""
     hardest: str = ""
     error: str = ""
-    most: float = math.inf
+    most: float = math.nan
     within: tuple[float, float] = (0.0, math.inf)
     dimension: bool = False
     range: tuple[str, ...] = ()
