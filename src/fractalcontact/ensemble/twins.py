@@ -37,9 +37,9 @@ def twin_loadings(
     specimen, rough = loading.specimen, _surface(loading)
     slid = _slides(loading)
     plane = 0.0 if slid else rough - without_mean_plane(rough)
-    shape = specimen["lower"].shape if slid else rough.shape
+    ny, nx = specimen["lower"].shape if slid else rough.shape
     try:
-        surface = twin_surface(rough, spacing_of(specimen), shape)
+        surface = twin_surface(rough, spacing_of(specimen), (ny, nx))
     except ValueError as error:
         name = specimen.attrs["name"]
         raise InputError(f"specimen {name}, key 'twins': {error}; remove the key") from error

@@ -132,7 +132,8 @@ def permeability_law(
     passes = np.isfinite(logarithm)
     shared = np.asarray(may_fit, bool) & passes[passes.any(axis=1)].all(axis=0)
     lines = [fit_line(pressure[shared], of_branch[shared]) for of_branch in logarithm]
-    slope, intercept = (Estimate.stack([line[part] for line in lines]) for part in (0, 1))
+    slope = Estimate.stack([line.slope for line in lines])
+    intercept = Estimate.stack([line.intercept for line in lines])
     low, high = slope[slope.known].over if slope.known.any() else ([np.nan], [np.nan])
     values = intercept.mapped(np.exp), slope.mapped(np.negative, falling=True), low[0], high[0]
     return dict(zip((*PERMEABILITY, *PERMEABILITY_RANGE), values, strict=True))

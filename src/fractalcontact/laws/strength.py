@@ -230,7 +230,7 @@ def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
             if source == "assumed" and name not in _OF_BARTON:
                 sign = -1 if end == "low" else 1
                 angle = np.degrees(np.arctan(value / pressure)) + sign * ASSUMED_ANGLE_ERROR
-                of_angle = shear_strength(pressure, angle)[0] - value
+                of_angle = value.copy(data=shear_strength(pressure, angle)[0]) - value
             half = np.hypot(own, of_angle)
             title = value.attrs["long_name"]
             words = f"{end} end of {title}: own error at 95 %, phi_b {source}"

@@ -7,9 +7,6 @@ from typing import Any
 from ..core.estimate import Estimate, column_of
 from .published import Number, Row
 
-#: Numbers that stand beside a value.
-_ERRORS = ("error", "population", "hardest")
-
 
 def columns_of(row: Row, number: Number) -> dict[str, Any]:
     """Columns of a number: NAME, NAME_low, NAME_high, NAME_error_surface and so on, the unit last.
@@ -19,7 +16,8 @@ def columns_of(row: Row, number: Number) -> dict[str, Any]:
     """
     name = _column(row, number)
     if number.missing:
-        number = number._replace(estimate=Estimate(), **dict.fromkeys(_ERRORS, math.nan))
+        nan = math.nan
+        number = number._replace(estimate=Estimate(), error=nan, population=nan, hardest=nan)
     fields = {"": number.value}
     if row.uncertain:
         fields |= {"low": number.estimate.low, "high": number.estimate.high}
