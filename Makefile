@@ -8,6 +8,7 @@
 #:   make smoke                 the small study config/smoke.yaml
 #:   make slurm                 the study on a cluster
 #:   make report                the result page alone, and what it is made of
+#:   make notebook              docs/notebooks in the browser (JupyterLab, installed at the first call)
 #:   make verify                every result against its checksum
 #:
 #: A developer's
@@ -47,7 +48,7 @@ OPTIONS = -- --cores $(CORES)
 # does it say nothing; and of that of a closed pipe no shell says anything.
 QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
-.PHONY: help all study new check-scans describe dry-run keep-going smoke slurm report verify test test-all test-processors test-slurm test-slurm-accounting test-browser examples faults lint format docs schema rule-graph keep same lock clean
+.PHONY: help all study new check-scans describe dry-run keep-going smoke slurm report notebook verify test test-all test-processors test-slurm test-slurm-accounting test-browser examples faults lint format docs schema rule-graph keep same lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -121,9 +122,16 @@ test-browser: $(VENV)/browser-installed
 	@chromium=$$(sh tests/support/chromium.sh) && \
 	  CHROMIUM=$$chromium $(BIN)/python -m pytest tests/browser && cat results/browser/report.txt
 
+# The study that the notebook reads.
+NOTEBOOK_STUDY = @STUDY=docs/notebooks/own_joint.yaml; $(RUN) $(OPTIONS) results/own_joint/atlas.nc
 docs: $(VENV)/docs-installed
+	$(NOTEBOOK_STUDY)
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs results/docs
 	@echo "file://$(CURDIR)/results/docs/index.html"
+
+notebook: $(VENV)/notebook-installed
+	$(NOTEBOOK_STUDY)
+	$(BIN)/python -m jupyterlab docs/notebooks/own_joint.ipynb
 
 # Its daemons, where Debian has them: who is not root, or elsewhere, is told what is missing.
 HAVE_DAEMON = command -v $(1) >/dev/null || { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && \
@@ -170,24 +178,29 @@ $(VENV)/bin/python:
 FOUND_IN := $(shell cat $(VENV)/lib/python*/site-packages/__editable__.fractalcontact-*.pth 2>/dev/null)
 .PHONY: moved
 # Bytecode is compiled now: without it every job pays the imports three times over.
-$(VENV)/installed: requirements.lock pyproject.toml $(if $(filter-out $(CURDIR)/src,$(FOUND_IN)),moved) | $(VENV)/bin/python
-	$(PIP) install --require-hashes --compile -r requirements.lock
+$(VENV)/installed: requirements/study.lock pyproject.toml $(if $(filter-out $(CURDIR)/src,$(FOUND_IN)),moved) | $(VENV)/bin/python
+	$(PIP) install --require-hashes --compile -r requirements/study.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 	$(BIN)/python -m compileall -q src
 # Compiled now too: else the first jobs of the first study would all do it.
 	@$(BIN)/python -m fractalcontact.commands.compile_kernels
 	@touch $@
 
-$(VENV)/tests-installed: requirements-test.lock $(VENV)/installed
-	$(PIP) install --require-hashes --compile -r requirements-test.lock
+$(VENV)/tests-installed: requirements/test.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements/test.lock
 	@touch $@
 
-$(VENV)/browser-installed: requirements-browser.lock $(VENV)/tests-installed
-	$(PIP) install --require-hashes --compile -r requirements-browser.lock
+$(VENV)/browser-installed: requirements/browser.lock $(VENV)/tests-installed
+	$(PIP) install --require-hashes --compile -r requirements/browser.lock
 	@touch $@
 
-$(VENV)/docs-installed: requirements-docs.lock $(VENV)/installed
-	$(PIP) install --require-hashes --compile -r requirements-docs.lock
+$(VENV)/docs-installed: requirements/docs.lock $(VENV)/installed
+	$(PIP) install --require-hashes --compile -r requirements/docs.lock
+	@touch $@
+
+# Not locked, as no result depends on it.
+$(VENV)/notebook-installed: pyproject.toml $(VENV)/installed
+	$(PIP) install --no-build-isolation -e '.[notebook]'
 	@touch $@
 
 $(VENV)/slurm-installed: $(VENV)/installed
@@ -203,11 +216,11 @@ $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet
 lock:
-	$(COMPILE) pyproject.toml --extra study --extra flow --extra install -o requirements.lock
-	$(COMPILE) pyproject.toml --extra study --extra flow --extra install --extra test -c requirements.lock -o requirements-test.lock
-	$(COMPILE) --group browser -c requirements-test.lock -o requirements-browser.lock
-	$(COMPILE) --group docs -c requirements-test.lock -o requirements-docs.lock
-	grep -v '^ *--hash=' requirements.lock | sed 's/ *\\$$//' > requirements-conda.txt
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install -o requirements/study.lock
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install --extra test -c requirements/study.lock -o requirements/test.lock
+	$(COMPILE) --group browser -c requirements/test.lock -o requirements/browser.lock
+	$(COMPILE) --group docs -c requirements/test.lock -o requirements/docs.lock
+	grep -v '^ *--hash=' requirements/study.lock | sed 's/ *\\$$//' > requirements/conda.txt
 
 # Kills, damaged and replaced files, full disks, threads and forks: nothing may be wrong silently.
 faults: $(VENV)/tests-installed $(if $(findstring --slurm,$(FAULTS)),$(VENV)/slurm-installed)

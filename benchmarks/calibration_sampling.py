@@ -35,8 +35,8 @@ from fractalcontact.error_budget.refinement import LoadCurve
 from fractalcontact.joint.joint import prefractal
 from fractalcontact.roughness.twin_surface import twin_surface
 from fractalcontact.states.area_sampling import state_area_sampling
+from fractalcontact.states.state_quantities import state_quantities
 from fractalcontact.states.state_scalars import aperture
-from fractalcontact.states.subgrid import state_quantities
 from fractalcontact.states.sweep import load_steps
 from fractalcontact.surface.synthesis import band_limited
 from roughcontact.elastic.halfspace import HalfSpace

@@ -5,9 +5,10 @@
 
 Problems are drawn: faces, plateaus and terraces of 24 to 1024 nodes per side, most of 64 to 256;
 hardness of 1e-4 to 1 of the modulus; forces of 1e-4 to 0.99 of what the window carries. Every state
-is judged by a convolution of its own (`roughcontact.contact.violation`). Printed are the problems
-given up and the wrong states, and the table of docs/solver_speed.md, "Where nodes yield". Seconds
-are of the processor, of one thread where OMP_NUM_THREADS is 1.
+is judged by a convolution of its own (`roughcontact.contact.violation`). The
+script prints the problems given up, the wrong states, and the table "Where nodes yield" of
+packages/roughcontact/docs/solver_speed.md. Seconds are of the processor, of one thread where
+OMP_NUM_THREADS is 1.
 """
 
 import argparse

@@ -14,8 +14,9 @@ import numpy as np
 
 from fractalcontact.error_budget.refinement import FACTORS, curve_errors
 from fractalcontact.roughness.dimension import slope_statistics
+from fractalcontact.states.state_quantities import STATE_QUANTITIES, state_quantities
 from fractalcontact.states.state_scalars import state_errors
-from fractalcontact.states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
+from fractalcontact.states.subgrid import subgrid_states, summit
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.elastic.halfspace import HalfSpace
 
@@ -48,7 +49,7 @@ def stated_and_true(heights, loads):
         solving = {"rtol": TOLERANCES[factor]}
         states = list(subgrid_states(heights, space, factor, forces, solving, "joint"))
         numbers = [state_quantities(state, highest) for state, highest in states]
-        values[factor] = np.array([list(n.values()) for n in numbers]).T
+        values[factor] = np.array([[of[name] for of in numbers] for name in STATE_QUANTITIES])
         if factor == 1:
             raw = np.array([state.area for state, _ in states])
             solver = solver_errors([state for state, _ in states], forces)
@@ -57,11 +58,15 @@ def stated_and_true(heights, loads):
     rise = summit(heights) - float(heights.max())
     fewer = levels.copy()
     fewer[2] = np.nan
-    stated = [
-        np.hypot([found.error for found in curve_errors(of, raw, length, rise)], solver)
-        for of in (levels, fewer)
-    ]
+    stated = [np.hypot(curve_error_rows(of, raw, length, rise), solver) for of in (levels, fewer)]
     return np.array([*stated, abs(levels[0] - values[TRUE])])
+
+
+def curve_error_rows(levels, raw_area, length, rise):
+    """Numerical errors (quantity, load) from the values (spacing, quantity, load)."""
+    by_name = dict(zip(STATE_QUANTITIES, levels.swapaxes(0, 1), strict=True))
+    errors = curve_errors(by_name, raw_area, length, rise)
+    return np.array([errors[name].error for name in STATE_QUANTITIES])
 
 
 def solver_errors(states, forces):

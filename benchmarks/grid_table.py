@@ -27,7 +27,8 @@ from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.joint.joint import describe_joint, prefractal
 from fractalcontact.stages.specimen import prepare_specimen
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.subgrid import state_quantities, subgrid
+from fractalcontact.states.state_quantities import state_quantities
+from fractalcontact.states.subgrid import subgrid
 from fractalcontact.states.sweep import load_steps
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (

@@ -30,7 +30,6 @@ from fractalcontact.core.subject import Subject
 from fractalcontact.core.window import window_sides, window_slices
 from fractalcontact.domain.analysis import analyse_domains
 from fractalcontact.error_budget.closure_constants import seated_constants
-from fractalcontact.error_budget.other_windows import whole_composite, window_places
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.joint.jrc import profile_roughness
 from fractalcontact.joint.openings import prefractal_openings
@@ -41,6 +40,9 @@ from fractalcontact.report.published import read, row_of
 from fractalcontact.stages.closure_and_box_counts import reported_budget
 from fractalcontact.stages.specimen import specimen_of_files
 from fractalcontact.states.loading import JointLoading, Variant
+from fractalcontact.states.other_windows import whole_composite, window_places
+from fractalcontact.states.seat import closure_from
+from fractalcontact.states.state_quantities import SOUND, composite_quantities
 from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import (
     combine,
@@ -49,7 +51,6 @@ from fractalcontact.states.states import (
     map_states,
     with_pressure,
 )
-from fractalcontact.states.subgrid import SOUND, closure_from, composite_quantities
 from fractalcontact.states.sweep import joint_states, load_steps
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments

@@ -30,6 +30,7 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import DECISIVE
 from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.core.window import cell_side, window_sides
+from fractalcontact.error_budget.two_scans import registration_spread, registration_values
 from fractalcontact.joint.joint import describe_joint, prefractal
 from fractalcontact.laws.closure import closure_curves
 from fractalcontact.laws.closure_laws import fit_hyperbola
@@ -39,7 +40,6 @@ from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import overlap_words, suspect_words
 from fractalcontact.scan.read import read_faces
 from fractalcontact.states.loading import JointLoading
-from fractalcontact.states.registration_spread import registration_spread, registration_values
 from fractalcontact.states.states import combine, forces_of
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.checks import read_sidecar
@@ -101,7 +101,7 @@ def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict
     )
     cells = loading.cells[np.argmin(abs(loading.offsets - wanted))]
     loading = loading.at(cells)
-    states = combine([contact_states(loading, [1, 2], mapped=cells)])
+    states = combine([contact_states(loading, [1, 2], map_cells=cells)])
     e_star = settings.material.e_star
     curves = closure_curves(states, window_sides(specimen), e_star).isel(direction=0, offset=0)
     (force,) = forces_of([settings.map_load], loading.area)

@@ -5,10 +5,11 @@
     python benchmarks/solver_gains.py --sizes 1024 --runs 5
 
 Every problem is solved by the whole solver and once without each of its parts, which
-docs/solver_parts.md describes. All solves are to the same tolerance under a given closure: cold, or
-as the last step of a load sweep. Counted are applications of the elastic operator, on the grid
-itself, and on coarser grids as fractions of one there by area. They are exact; seconds are the
-median of the runs, and mean little where anything else runs on the machine. The table replaces
+packages/roughcontact/docs/solver_parts.md describes. All solves are to the same tolerance under a
+given closure: cold, or as the last step of a load sweep. The script counts applications of the
+elastic operator, on the grid itself, and on coarser grids as fractions of one there by area. They
+are exact; seconds are the median of the runs, and mean little where anything else runs on the
+machine. The table replaces
 that of the last run in ``--output``. As many threads are used as OMP_NUM_THREADS says, or as there
 are cores.
 

@@ -16,6 +16,7 @@ from fractalcontact.study.sidecar import sidecar_of_matrix
 DOCUMENTS = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "config/README.md")),
     ROOT / "packages/roughcontact/README.md",
+    *sorted(ROOT.glob("packages/roughcontact/docs/*.md")),
     *sorted(ROOT.glob("docs/*.md")),
 ]
 KEY = re.compile(r"`([A-Za-z_.0-9]+)`")
@@ -35,7 +36,8 @@ def keys_of(node):
 
 def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
     explained = set()
-    for line in (ROOT / "config/README.md").read_text(encoding="utf-8").splitlines():
+    documents = (ROOT / "docs/keys.md", ROOT / "config/README.md")
+    for line in "".join(path.read_text(encoding="utf-8") for path in documents).splitlines():
         explained |= {part for key in KEY.findall(line) for part in key.split(".")}
         # Those of a mapping stand in braces: `{modulus, poisson}`.
         for group in re.findall(r"`\{([a-z_, ]+)\}`", line):

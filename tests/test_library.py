@@ -114,6 +114,9 @@ def test_a_type_checker_sees_the_signatures(tmp_path):
 def test_the_version_stands_in_one_place():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["version"] == fractalcontact.__version__
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"(?m)^## ([\d.]+) - (\S+)$", changes)
+    assert newest.groups() == (citation["version"], str(citation["date-released"]))
     for project in (ROOT, ROOT / "packages/roughcontact"):
         settings = tomllib.loads((project / "pyproject.toml").read_text())
         assert settings["tool"]["setuptools"]["dynamic"]["version"] == {
@@ -200,12 +203,14 @@ def test_a_format_whose_library_is_missing_says_what_to_install(tmp_path, monkey
 
 
 def test_the_conda_environment_has_the_versions_of_the_lock():
-    pinned = re.findall(r"^([\w.-]+==\S+)", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
+    pinned = re.findall(
+        r"^([\w.-]+==\S+)", (ROOT / "requirements/study.lock").read_text(), re.MULTILINE
+    )
     conda = re.findall(
-        r"^([\w.-]+==\S+)", (ROOT / "requirements-conda.txt").read_text(), re.MULTILINE
+        r"^([\w.-]+==\S+)", (ROOT / "requirements/conda.txt").read_text(), re.MULTILINE
     )
     assert conda == pinned
     assert len(conda) > 50
-    assert "--hash" not in (ROOT / "requirements-conda.txt").read_text()
+    assert "--hash" not in (ROOT / "requirements/conda.txt").read_text()
     pip = yaml.safe_load((ROOT / "environment.yml").read_text())["dependencies"][-1]["pip"]
-    assert pip == ["-r requirements-conda.txt", "-e ."]
+    assert pip == ["-r requirements/conda.txt", "-e ."]

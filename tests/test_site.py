@@ -125,7 +125,8 @@ def test_pictures_are_small_and_every_page_is_in_the_contents():
         r"^```\{toctree\}\n(.+?)^```$", (DOCS / "index.md").read_text(encoding="utf-8"), re.M | re.S
     )
     listed = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
-    assert listed == {path.stem for path in DOCS.glob("*.md")} - {"index"}
+    pages = [*DOCS.glob("*.md"), *DOCS.glob("notebooks/*.ipynb")]
+    assert listed == {str(path.relative_to(DOCS).with_suffix("")) for path in pages} - {"index"}
 
 
 def test_every_function_of_the_package_is_in_the_reference():

@@ -167,7 +167,9 @@ class KernelCache(FunctionCache):
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
             if self._is_first():
-                text = "compiling kernels for this processor, once; this takes about a minute (%s)"
+                text = (
+                    "compiling kernels for this processor, once: about a minute of a free core (%s)"
+                )
                 LOG.warning(text, self._cache_path or "not kept")
         LOG.info("compiling %s", self._stem)
 
@@ -247,8 +249,8 @@ def _folders():
     wanted = next(_candidate_folders())
     if numba.config.CACHE_DIR and writable not in (wanted, None):
         warnings.warn(
-            f"{wanted}: not a private folder of this user, so compiled kernels go to {writable}; "
-            "set NUMBA_CACHE_DIR to another one, or remove this",
+            f"{wanted}: not a private folder of this user (mode 700), so compiled kernels "
+            f"go to {writable}; set NUMBA_CACHE_DIR to another one, or remove this",
             stacklevel=2,
         )
     # Users who cannot write to the installation still read its kernels.

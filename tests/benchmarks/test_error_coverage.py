@@ -8,7 +8,7 @@ import pandas as pd
 from ensembles import ensemble
 from places import BENCHMARKS
 
-from fractalcontact.states.subgrid import STATE_QUANTITIES
+from fractalcontact.states.state_quantities import STATE_QUANTITIES
 
 
 def test_stated_errors_cover_the_truth_and_are_not_far_larger(tmp_path):

@@ -163,7 +163,7 @@ def test_a_card_is_as_trusted_as_its_worst_light(cards):
         assert card["trust"]["word"] == words[worst]
         deciding = {light["key"]: light for light in card["lights"] if light["word"] == worst}
         cause = next(key for key in ("faces", "scan", "model", "nodes", "grid") if key in deciding)
-        _, _, advice = card["trust"]["help"].rpartition("times the strength); ")
+        _, _, advice = card["trust"]["help"].rpartition("times the strength by Barton's law); ")
         assert advice == deciding[cause]["help"]
         assert card["trust"]["reason"].startswith(deciding[cause]["title"])
 

@@ -82,12 +82,20 @@ def test_length_over_width_of_clusters():
     assert cluster_statistics(domain, 0.1)["long_share"] == pytest.approx(7 / 25)
 
 
-def test_the_largest_void_is_the_largest_distance_to_the_contact_twice():
+def test_the_largest_void_is_the_largest_disc_in_the_window_without_contact():
     domain = np.zeros((9, 9), bool)
     assert np.isnan(largest_void(domain, (0.5, 0.5)))
-    domain[4, 0] = True
-    assert largest_void(domain, (0.5, 0.5)) == pytest.approx(2 * 0.5 * np.hypot(8, 4))
-    assert largest_void(domain, (0.5, 1.0)) == pytest.approx(2 * np.hypot(8, 2))
+    # The edges of the window, half a cell beyond its nodes, bound the disc.
+    domain[0, 0] = True
+    assert largest_void(domain, (0.5, 0.5)) == pytest.approx(9 * 0.5)
+    domain[4, 4] = True
+    free = np.full((9, 9), np.inf)
+    for y, x in np.ndindex(free.shape):
+        to_edge = [y + 0.5, x + 0.5, 8.5 - y, 8.5 - x]
+        free[y, x] = min(np.hypot(y, x), np.hypot(y - 4, x - 4), *to_edge)
+    assert largest_void(domain, (1.0, 1.0)) == pytest.approx(2 * free.max())
+    # Cells twice as wide: two of them lie between the contact and the middle of the disc.
+    assert largest_void(domain, (0.5, 1.0)) == pytest.approx(4.0)
     assert largest_void(np.ones((4, 4), bool), (0.5, 0.5)) == 0
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 
 from fractalcontact.core.intervals import t_quantile
 from fractalcontact.error_budget.closure_constants import closure_constants, seated_constants
-from fractalcontact.states.subgrid import SOUND
+from fractalcontact.states.state_quantities import SOUND
 
 PRESSURE = np.geomspace(0.25, 25, 9)
 

@@ -10,21 +10,22 @@ from fractalcontact.domain.analysis import analyse_domains
 from fractalcontact.error_budget import refinement
 from fractalcontact.error_budget.derived import with_derived
 from fractalcontact.error_budget.error_budget import OF_SURFACE, error_budget, over_loads
-from fractalcontact.error_budget.other_windows import (
+from fractalcontact.error_budget.solve_plan import solve_plan
+from fractalcontact.flow.cubic_law import plane_flow
+from fractalcontact.joint.joint import composite_topography, describe_joint
+from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.other_windows import (
     MAX_OVERLAP,
     other_composites,
     whole_composite,
     window_places,
     window_spread,
 )
-from fractalcontact.error_budget.solve_plan import solve_plan
-from fractalcontact.flow.cubic_law import plane_flow
-from fractalcontact.joint.joint import composite_topography, describe_joint
-from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
-from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.state_quantities import state_quantities
 from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import combine, contact_domains
-from fractalcontact.states.subgrid import state_quantities, subgrid
+from fractalcontact.states.subgrid import subgrid
 from fractalcontact.states.sweep import joint_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments

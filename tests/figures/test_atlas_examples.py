@@ -5,6 +5,7 @@ import json
 import runpy
 import shutil
 
+import matplotlib.pyplot as plt
 import netCDF4
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from markup import MARKUP
 from places import ROOT
 from print_size import faults
 
+from fractalcontact import open_atlas
 from fractalcontact.core import checksums
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.text import compact
@@ -98,6 +100,29 @@ def test_the_first_lines_read_an_atlas():
     left = run_code("docs/first_hour.md", replaced=[JOINT])
     assert np.isfinite(left["curves"]["interface_closure"]).any()
     left["atlas"].close()
+
+
+def test_the_notebook_solves_a_state_on_the_curve_of_its_joint(project, monkeypatch):
+    folder = project / "docs/notebooks"
+    folder.mkdir(parents=True)
+    monkeypatch.chdir(folder)
+    notebook = json.loads((DOCS / "notebooks/own_joint.ipynb").read_text(encoding="utf-8"))
+    cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert [cell["outputs"] for cell in cells] == [[]] * len(cells)
+    program = "\n".join("".join(cell["source"]) for cell in cells)
+    for words, others in (('"own_joint", "granite"', '"paper", "sliding"'), ("7.0", "LOAD")):
+        assert words in program
+        program = program.replace(words, others)
+    atlas = open_atlas(project / "results/paper")
+    budget, closure = atlas["error_budget/sliding"], atlas["closure/sliding"]
+    place = {name: budget[name].values for name in ("direction", "offset")}
+    curve = closure.sel(resolution=1, **place)
+    load = int(np.argmax(curve["interface_closure"].values))
+    names = {"LOAD": float(curve["nominal_pressure"][load])}
+    exec(program, names)
+    assert names["one_more"] == pytest.approx(float(curve["interface_closure"][load]), rel=1e-4)
+    assert names["axes"].get_xlabel() == "closure from first touch (mm)"
+    plt.close("all")
 
 
 def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path, monkeypatch):

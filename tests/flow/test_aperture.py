@@ -11,8 +11,8 @@ from fractalcontact.flow.aperture import (
     zimmerman_bodvarsson_aperture,
 )
 from fractalcontact.flow.cubic_law import flow_of
+from fractalcontact.flow.joint_flow import path_pressures
 from fractalcontact.flow.network import NO_PATH
-from fractalcontact.stages.flow import _path_pressures
 
 
 def test_the_slope_of_a_plane_is_its_gradient_and_contact_counts_for_nothing():
@@ -50,8 +50,8 @@ def test_water_reaches_a_reynolds_number_of_one_at_ten_kilopascals_a_metre():
 
 def test_pressures_of_percolation_lie_between_loads():
     pressure = np.array([1.0, 2.0, 5.0, 10.0])
-    assert _path_pressures(pressure, np.array([3.0, 1.0, 0.0, 0.0]), np.nan) == (2.0, 5.0)
-    opened, closed = _path_pressures(pressure, np.array([3.0, 1.0, np.nan, 1e-9]), np.nan)
+    assert path_pressures(pressure, np.array([3.0, 1.0, 0.0, 0.0]), np.nan) == (2.0, 5.0)
+    opened, closed = path_pressures(pressure, np.array([3.0, 1.0, np.nan, 1e-9]), np.nan)
     assert opened == 10
     assert np.isnan(closed)
 

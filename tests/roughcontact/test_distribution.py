@@ -1,13 +1,15 @@
 """The solver as a distribution: what its wheel holds and needs, and what its tests need."""
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
 from email.parser import Parser
 
-from code_blocks import run_code
+import pytest
+from code_blocks import blocks, run_code
 from packaging.requirements import Requirement
 from places import ROOT
 
@@ -50,6 +52,24 @@ def test_the_script_of_its_readme_solves_what_it_says():
     assert abs(state.mean_pressure - 5.0) < 1e-5
     assert state.space.boundary == "periodic"
     assert 0 < state.area < state.space.area
+    (printed,) = (
+        block.text
+        for block in blocks("packages/roughcontact/README.md")
+        if block.text.startswith("<ContactState")
+    )
+    number = r"{}[= ]([\d.e-]+)"
+    stated = {
+        name: float(re.search(number.format(name), printed)[1])
+        for name in ("force", "closure", "area", "corrected area", "stiffness")
+    }
+    solved = [state.force, state.closure, state.area, state.corrected_area, state.stiffness]
+    assert list(stated.values()) == pytest.approx(solved, rel=2e-3)
+
+
+def test_the_folder_of_kernels_is_found_as_the_readme_says():
+    code = "import roughcontact; print(roughcontact.kernel_cache.cache_folder())"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == str(roughcontact.kernel_cache.cache_folder())
 
 
 def imported(path):

@@ -13,7 +13,7 @@ from unchecked_settings import resolve_unchecked
 
 from fractalcontact.flow.aperture import MAX_CRUSHED
 from fractalcontact.flow.cubic_law import plane_flow, window_interval
-from fractalcontact.stages.flow import SHIFT, _numbers, _path_pressures, _shifted_ratio
+from fractalcontact.flow.joint_flow import SHIFT, flow_numbers, path_pressures, shifted_ratio
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -149,22 +149,22 @@ def test_an_elastic_joint_crushes_nothing(sheared):
 def test_a_path_that_is_open_where_no_transmissivity_is_stated_is_open():
     pressure, critical = np.array([1.0, 5.0, 25.0, 50.0]), np.array([0.3, 0.2, 0.1, 0.0])
     flows = np.array([1e-3, np.nan, np.nan, 0.0])
-    assert _path_pressures(pressure, flows, critical) == (25.0, 50.0)
+    assert path_pressures(pressure, flows, critical) == (25.0, 50.0)
 
 
 def test_the_ratio_of_shifted_faces_needs_a_transmissivity_that_is_stated():
     plate = np.full((8, 8), 0.1)
-    assert _shifted_ratio(plate, (0.1, 0.1), "x") == pytest.approx(8.0)
+    assert shifted_ratio(plate, (0.1, 0.1), "x") == pytest.approx(8.0)
     pinched = plate.copy()
     pinched[:, 4] = 0.001
-    assert np.isnan(_shifted_ratio(pinched, (0.1, 0.1), "x"))
-    assert np.isnan(_shifted_ratio(0 * plate, (0.1, 0.1), "x"))
+    assert np.isnan(shifted_ratio(pinched, (0.1, 0.1), "x"))
+    assert np.isnan(shifted_ratio(0 * plate, (0.1, 0.1), "x"))
 
 
 @pytest.mark.parametrize(("crushed", "states_one"), [(0.99, True), (1.01, False)])
 def test_no_transmissivity_is_stated_where_crushed_rock_may_fill_the_gap(crushed, states_one):
     gap = np.full((8, 8), 0.1)
-    found = _numbers(gap, (0.1, 0.1), "x", crushed * MAX_CRUSHED, 0.0)
+    found = flow_numbers(gap, (0.1, 0.1), "x", crushed * MAX_CRUSHED, 0.0)
     assert np.isfinite(float(found["transmissivity"].value)) == states_one
     assert ("crushed rock" in found["flow_reason"]) != states_one
 
@@ -172,17 +172,17 @@ def test_no_transmissivity_is_stated_where_crushed_rock_may_fill_the_gap(crushed
 def test_a_flow_that_the_grid_does_not_resolve_is_missing_with_the_reason():
     # Waves of eight cells of nearly their own height along the flow.
     gap = np.tile(1 + 0.95 * np.sin(np.pi / 4 * (np.arange(32) + 0.5)), (8, 1))
-    found = _numbers(gap, (0.1, 0.1), "x", 0.0, 0.0)
+    found = flow_numbers(gap, (0.1, 0.1), "x", 0.0, 0.0)
     assert np.isnan(found["transmissivity"].value)
     assert "does not resolve" in found["flow_reason"]
     assert not found["flow_resolved"]
-    across = _numbers(gap, (0.1, 0.1), "y", 0.0, 0.0)
+    across = flow_numbers(gap, (0.1, 0.1), "y", 0.0, 0.0)
     assert across["flow_resolved"]
     assert across["transmissivity"].value > 0
 
 
 def test_no_path_is_zero_however_much_is_crushed():
-    found = _numbers(np.zeros((8, 8)), (0.1, 0.1), "x", np.inf, 0.0)
+    found = flow_numbers(np.zeros((8, 8)), (0.1, 0.1), "x", np.inf, 0.0)
     assert found["transmissivity"].value == 0
 
 
@@ -196,11 +196,11 @@ def test_the_interval_holds_the_error_of_the_mean_gap_or_there_is_none(sheared):
     stated = float(flow["transmissivity_along_high"][load])
     assert stated == pytest.approx(high, rel=1e-3, nan_ok=True)
     for unknown in (np.nan, 1.5):
-        without = _numbers(gap, (0.15, 0.1), "y", 0.0, unknown)
+        without = flow_numbers(gap, (0.15, 0.1), "y", 0.0, unknown)
         assert "no interval" in without["flow_reason"]
         assert without["transmissivity"].value == pytest.approx(whole, rel=1e-3)
         assert np.isnan(without["transmissivity"].ends[1:]).all()
-    assert _numbers(gap, (0.15, 0.1), "y", 0.0, 0.1)["flow_reason"] == ""
+    assert flow_numbers(gap, (0.15, 0.1), "y", 0.0, 0.1)["flow_reason"] == ""
 
 
 def test_faces_moved_apart_let_more_pass(sheared):

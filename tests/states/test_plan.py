@@ -37,16 +37,16 @@ FORCES = np.array([20.0, 32.0, 100.0, 300.0])  # 2 MPa on 16 mm2 are 32 N
 
 
 def which(**where):
-    known = {"first": True, "mapped": False, "factor": 1, "all_states": False}
+    known = {"first": True, "at_maps": False, "factor": 1, "all_states": False}
     return solved_loads(SETTINGS, FORCES, 16.0, **(known | where)).tolist()
 
 
 def test_only_what_is_shown_is_solved():
     assert which() == [0, 1, 2, 3]
     assert which(factor=2) == []
-    assert which(factor=2, mapped=True) == [0, 1, 2, 3]
+    assert which(factor=2, at_maps=True) == [0, 1, 2, 3]
     assert which(first=False) == [1, 2]
-    assert which(first=False, mapped=True, factor=2) == []
+    assert which(first=False, at_maps=True, factor=2) == []
     assert which(first=False, factor=4, all_states=True) == [0, 1, 2, 3]
 
 
@@ -155,7 +155,7 @@ def test_a_small_closure_of_the_interface_is_as_exact_as_a_large_one():
 def curves_of(specimen, solver):
     states = [
         contact_states(
-            JointLoading(specimen, direction, [2, 5], SETTINGS, solver), [1, 2, 4], mapped=5
+            JointLoading(specimen, direction, [2, 5], SETTINGS, solver), [1, 2, 4], map_cells=5
         )
         for direction in SETTINGS.contact_directions
     ]

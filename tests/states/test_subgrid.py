@@ -8,13 +8,8 @@ from fractalcontact.states.numerical_error import (
     closure_numerical_error,
     numerical_error,
 )
-from fractalcontact.states.subgrid import (
-    STATE_QUANTITIES,
-    state_quantities,
-    subgrid,
-    subgrid_states,
-    summit,
-)
+from fractalcontact.states.state_quantities import STATE_QUANTITIES, state_quantities
+from fractalcontact.states.subgrid import subgrid, subgrid_states, summit
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.corrected_area import corrected_area
 from roughcontact.elastic.halfspace import HalfSpace

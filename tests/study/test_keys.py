@@ -35,6 +35,14 @@ def test_tables_of_keys_are_those_of_the_classes():
         assert document == written(document, of_document), f"{path}: make schema"
 
 
+def test_no_cell_of_a_table_of_keys_is_long():
+    rows = [
+        line for line in (ROOT / "docs/keys.md").read_text().splitlines() if line.startswith("| `")
+    ]
+    assert len(rows) > 100
+    assert [cell for row in rows for cell in row.split(" | ") if len(cell.split()) > 40] == []
+
+
 class Lower(Section):
     """A section of two keys."""
 

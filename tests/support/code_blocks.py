@@ -11,6 +11,7 @@ from places import ROOT
 DOCUMENTS = [
     ROOT / "README.md",
     ROOT / "packages/roughcontact/README.md",
+    *sorted(ROOT.glob("packages/roughcontact/docs/*.md")),
     *sorted(ROOT.glob("docs/*.md")),
 ]
 
@@ -35,7 +36,11 @@ NOT_RUN = {
         "space = HalfSpace(topography",
     ): "tests/roughcontact/contact/test_state.py",
     (
-        "docs/solver_speed.md",
+        "packages/roughcontact/README.md",
+        "<ContactState",
+    ): "printed by the first script: compared in tests/roughcontact/test_distribution.py",
+    (
+        "packages/roughcontact/docs/solver_speed.md",
         ".venv/bin/python benchmarks/beside_peers.py",
     ): f"{HOURS}, beside others",
     (
@@ -86,23 +91,26 @@ NOT_RUN = {
     ("docs/first_hour.md", "measured:"): "read in tests/study/test_laboratory_tests.py",
     ("docs/laboratory.md", "# scans/granite.yaml"): "read in tests/study/test_laboratory_tests.py",
     ("docs/verification.md", "make grid-table"): BY_CI,
-    ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
+    ("packages/roughcontact/docs/solver.md", "p, u, w <- a start"): "pseudo-code",
     (
         "docs/workflow.md",
         ".venv/bin/python -m snakemake --cores 2",
     ): "options on another study: tests/workflow/test_snakemake_user.py",
     ("docs/workflow.md", "module fractalcontact:"): "tests/workflow/test_snakemake_user.py",
     (
-        "docs/solver_parts.md",
+        "packages/roughcontact/docs/solver_parts.md",
         "python benchmarks/solver_gains.py",
     ): "takes minutes of a quiet machine",
     (
-        "docs/solver_speed.md",
+        "packages/roughcontact/docs/solver_speed.md",
         "OMP_NUM_THREADS=1 python benchmarks/capped.py",
     ): "takes minutes of a quiet machine",
-    ("docs/solver_speed.md", "make bench PEERS=1"): f"{HOURS}, installs other programs",
     (
-        "docs/solver_speed.md",
+        "packages/roughcontact/docs/solver_speed.md",
+        "make bench PEERS=1",
+    ): f"{HOURS}, installs other programs",
+    (
+        "packages/roughcontact/docs/solver_speed.md",
         "OMP_NUM_THREADS=1 python benchmarks/periodic_peers.py",
     ): "on a small surface in tests/benchmarks/test_periodic_peers.py",
 }

@@ -79,6 +79,8 @@ ENSEMBLES: dict[str, tuple] = {
     "sets of power-law sizes": (60, 200),
     # surface
     "synthetic seeds": (8, 20),
+    "uneven surfaces": (16, 64),
+    "faces like fractured rock": (3, 12),
     "edge pairs": (20, 40),
     "outlier surfaces": ((200, (1, 2)), (400, (1, 2))),
     "extruded profiles": ((512, 8), (1024, 10)),

@@ -19,6 +19,7 @@ SETTINGS = {
     "opposite": "match",
     "chosen_for": {},
     "capped_variant": False,
+    "known_contact": False,
 }
 
 
@@ -79,6 +80,10 @@ def stages(**changes):
         "exponent": np.full(7, 1.02),
         "window_exponent": np.full(7, 0.4),
         "closure_exponent": 0.5,
+        "gap_exponent": 0.45,
+        "roughness_exponent": 0.5,
+        "known_dimension": 2.2,
+        "spectrum": 2.2,
         "dilatancy": [1 - np.exp(-RIGID), 1.5 * (1 - np.exp(-RIGID))] * 2,
         "limit": 0.1,
         "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
@@ -168,10 +173,11 @@ def stages(**changes):
         windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
         of_void = np.full((len(V), 1), values["void_exponent"] + by)
         windows[f"void_exponent{end}"] = ("offset", "normal_force"), of_void
-        of_heights = np.full((len(V), 1), 0.5 + by / 100)
+        windows[f"random_void_exponent{end}"] = ("offset", "normal_force"), of_void
+        of_gap = np.full((len(V), 1), values["gap_exponent"] + by / 2)
+        windows[f"gap_exponent{end}"] = ("offset", "normal_force"), of_gap
+        of_heights = np.full((len(V), 1), values["roughness_exponent"] + by / 100)
         windows[f"roughness_exponent{end}"] = ("offset", "normal_force"), of_heights
-        windows[f"face_hurst{end}"] = (), values["face_hurst"] + by / 2
-        windows[f"expected_hurst{end}"] = (), 0.8 + by / 2
         windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
             ("share", "normal_force"),
             np.asarray(-np.inf if values["bounded"] and by < 0 else by)
@@ -181,12 +187,11 @@ def stages(**changes):
         windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
     angles = np.reshape(values["slope_angles"], (1, 4, 1)) + np.zeros((2, 1, 1))
     of_sizes = "share", "part", "normal_force"
+    truncated = np.reshape(np.broadcast_to(values["truncated"], 4), (1, 4, 1))
     windows |= {
         "side": ("part", [20.0, 10.0, 5.0, 2.5][::-1]),
         "limit_slope_angle": (of_sizes, angles),
-        "truncated_fraction_at_equal_v_over_b": (of_sizes, np.full((2, 4, 1), values["truncated"])),
-        "face_hurst_b_min": 0.2,
-        "face_hurst_b_max": 2.0,
+        "truncated_fraction_at_equal_v_over_b": (of_sizes, np.broadcast_to(truncated, (2, 4, 1))),
     }
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     lost = np.full(4, values["uncorrelated"])
@@ -203,8 +208,16 @@ def stages(**changes):
         loads=[],
         reference=SETTINGS["map_load"][0],
     )
+    dimensions = [3 - values["face_hurst"], values["spectrum"]]
+    surface = {"known_dimension": values["known_dimension"], "range_min": 0.2, "range_max": 2.0}
+    for end, by in ends.items():
+        surface[f"hurst{end}"] = "estimator", [3 - one + by / 2 for one in dimensions]
+        surface[f"dimension{end}"] = "estimator", [one + by / 2 for one in dimensions]
     made = {
         "specimens": specimen,
+        "surface_dimension": xr.Dataset(
+            surface, {"estimator": ["roughness_length", "power_spectrum"]}
+        ),
         "joints": slid,
         "closure": xr.Dataset(
             {

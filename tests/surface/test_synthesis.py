@@ -87,6 +87,70 @@ def test_spectrum_is_isotropic():
     assert np.mean(ratio) == pytest.approx(0, abs=0.05)
 
 
+def mean_squares(surfaces, lags):
+    """Mean square height differences (axis, lag) along x and y, over surfaces of like size."""
+    return np.array(
+        [
+            [np.mean([np.mean((z[:, k:] - z[:, :-k]) ** 2) for z in surfaces]) for k in lags]
+            for surfaces in (surfaces, [z.T for z in surfaces])
+        ]
+    )
+
+
+@pytest.mark.parametrize("anisotropy", [0.5, 2.0])
+@pytest.mark.parametrize("hurst", [0.5, 0.8])
+def test_an_anisotropic_surface_is_one_stretched_along_y(hurst, anisotropy):
+    options = {"rms": 1.0, "anisotropy": anisotropy}
+    surfaces = [self_affine((128, 128), 1.0, hurst, seed=s, **options) for s in SEEDS]
+    along_x, along_y = mean_squares(surfaces, [4, 8])
+    np.testing.assert_allclose(along_x / along_y, anisotropy ** (2 * hurst), rtol=0.25)
+    # The same height differences, at a distance that is longer by the anisotropy.
+    (wider,) = mean_squares(surfaces, [round(4 * anisotropy)])[1]
+    assert wider == pytest.approx(along_x[0], rel=0.15)
+
+
+@pytest.fixture(scope="module")
+def uneven():
+    """Gaussian and intermittent surfaces of the same seeds and spectrum, scaled to one rms."""
+    options = {"rms": 1.0, "roll_off": 16.0}
+    return {
+        share: [
+            self_affine((128, 128), 1.0, 0.8, seed=s, intermittency=share, **options)
+            for s in range(ensemble("uneven surfaces"))
+        ]
+        for share in (0.0, 0.15, 0.3)
+    }
+
+
+def test_uneven_roughness_leaves_the_spectrum_as_it_is(uneven):
+    lags = [1, 4, 16]
+    gaussian = mean_squares(uneven[0.0], lags)
+    for share in (0.15, 0.3):
+        np.testing.assert_allclose(mean_squares(uneven[share], lags), gaussian, rtol=0.2)
+
+
+def test_uneven_roughness_gives_slopes_heavy_tails_at_short_distances(uneven):
+    def kurtosis(surfaces, lag):
+        steps = [z[:, lag:] - z[:, :-lag] for z in surfaces]
+        return np.median([np.mean(d**4) / np.mean(d**2) ** 2 for d in steps])
+
+    for lag in (1, 4, 16):
+        assert kurtosis(uneven[0.0], lag) == pytest.approx(3, abs=0.3)
+    for share, least in ((0.15, 6), (0.3, 12)):
+        by_lag = [kurtosis(uneven[share], lag) for lag in (1, 4, 16)]
+        assert by_lag[0] > least
+        assert by_lag == sorted(by_lag, reverse=True)
+
+
+def test_rough_places_are_drawn_independently_of_the_waves(uneven):
+    # Were they not, high places would be rough ones: heights and local slopes would correlate.
+    found = [
+        np.corrcoef(z[:-1, :-1].ravel(), np.abs(np.diff(z, axis=1)[:-1]).ravel())[0, 1]
+        for z in uneven[0.15]
+    ]
+    assert np.mean(found) == pytest.approx(0, abs=3 * np.std(found) / np.sqrt(len(found)))
+
+
 def test_rms_is_that_of_the_levelled_patch():
     z = self_affine((60, 90), SPACING, 0.8, rms=0.3, seed=4)
     assert z.shape == (60, 90)
@@ -121,6 +185,9 @@ def test_same_seed_gives_same_bits_and_another_seed_another_surface():
         {"spacing": -1.0},
         {"shape": (1, 9)},
         {"roll_off": 0.0},
+        {"anisotropy": 0.0},
+        {"intermittency": -0.1},
+        {"intermittency": 0.5},
     ],
 )
 def test_senseless_arguments_are_refused(wrong):

@@ -46,7 +46,12 @@ def test_the_catalog_finds_what_it_wants():
     usage = catalog["usage"]
     assert usage["report"] is True
     assert usage["mandatory-flags"]["flags"].startswith("--configfile config/")
-    assert isinstance(usage["software-stack-deployment"]["conda"], bool)
+    deployment = usage["software-stack-deployment"]
+    assert deployment.keys() == {"conda", "apptainer", "apptainer+conda"}
+    assert {*map(type, deployment.values())} == {bool}
+    readme = (ROOT / "README.md").read_text(encoding="utf-8").lower()
+    assert "snakemake" in readme
+    assert "workflow" in readme
     assert (ROOT / usage["mandatory-flags"]["flags"].split()[1]).is_file()
     assert (ROOT / "config/README.md").read_text().startswith("# ")
 

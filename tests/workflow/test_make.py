@@ -26,7 +26,8 @@ def project(tmp_path):
     for name in ("Makefile", "benchmarks/Makefile"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
-    for name in ("requirements.lock", "pyproject.toml"):
+    for name in ("requirements/study.lock", "pyproject.toml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
     python = tmp_path / ".venv/bin/python"
     python.parent.mkdir(parents=True)

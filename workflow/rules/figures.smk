@@ -1,5 +1,4 @@
-# The atlas of each specimen, and figures of specimens and of the study: PNG, SVG, numbers as CSV, caption as
-# text.
+# Figures of specimens and of the study: PNG, SVG, numbers as CSV, caption as text.
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.selection import CAPPED_VARIANTS
 
@@ -34,69 +33,10 @@ def drawings(names, folder="{specimen}/", category="{specimen}"):
     return found
 
 
-def configuration_of(wildcards):
-    """Configuration in the atlas of one specimen, without that of the others.
-
-    So a change of another specimen draws no figure of this one again.
-    """
-    name = known(wildcards)
-    stated = {
-        key: config[key] for key in ("study", "accuracy", "solver", "figures") if key in config
-    }
-    if name in config.get("embedded", {}):
-        stated["embedded"] = {name: config["embedded"][name]}
-    return {"study": stated, "settings": {name: RECORDS[name]}}
-
-
 #: List of the figures that failed. It is empty unless the program has an error.
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 #: Digest of what each figure was drawn from: a figure whose digest stays is not drawn again.
 DRAWN_FROM = f"{RESULTS}/drawn_from/{{specimen}}.txt"
-
-
-# Atlas of one specimen, and its row in a campaign. The job does not need atlas.nc, so a new scan draws only
-# its own figures, and a bad scan stops no other specimen's figures. Contact maps are in it, because figures
-# show them beside every specimen.
-rule specimen_atlas:
-    input:
-        STAGE_PATTERNS,
-        rules.strength.output,
-        ENSEMBLE,
-        branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
-        [] if CAMPAIGN else MAP_FILES,
-    output:
-        **({"row": SPECIMEN_ROW} if CAMPAIGN else {}),
-        atlas=update(SPECIMEN_ATLAS),
-    log:
-        f"{RESULTS}/logs/specimen_atlas/{{specimen}}.log",
-    wildcard_constraints:
-        specimen=names_of(SLIDING, FLAT),
-    priority: PRIORITY["figures"]
-    resources:
-        mem_mb=memory("specimen_atlas"),
-        runtime=minutes("specimen_atlas"),
-    params:
-        configuration=configuration_of,
-        code=code("specimen_atlas"),
-    message:
-        "{wildcards.specimen}: its atlas"
-    script:
-        "../scripts/specimen_atlas.py"
-
-
-# The same for a specimen that does not slide and has no strength.
-use rule specimen_atlas as specimen_atlas_against_plane with:
-    input:
-        STAGE_PATTERNS,
-        rules.size_laws_against_plane.output,
-        ENSEMBLE,
-        branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
-        [] if CAMPAIGN else MAP_FILES,
-    log:
-        f"{RESULTS}/logs/specimen_atlas_against_plane/{{specimen}}.log",
-    wildcard_constraints:
-        specimen=names_of(FLAT, SLIDING),
-    priority: PRIORITY["figures_against_plane"]
 
 
 # Figures of one specimen. `update` leaves the old ones in place, and the job draws those alone whose numbers,

@@ -56,7 +56,7 @@ WORKFLOW = crate.Workflow(
         "workflow/engine/**/*.py",
         "config/schema/*.json",
         "environment.yml",
-        "requirements.lock",
+        "requirements/study.lock",
         "CITATION.cff",
         "LICENSE",
     ),

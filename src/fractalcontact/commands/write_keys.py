@@ -49,6 +49,7 @@ def tables() -> dict[str, dict[str, str]]:
     two, three = ("key", "what it is"), ("key", "what it is", "if left out")
     study = {
         "study": _table(three, _study_rows()),
+        "material": _table(three, _rows(keys.MaterialKeys)),
         "embedded": _table(two, _rows(keys.EmbeddedKeys)),
         "settings": _table(three, _rows(keys.SettingsKeys)),
         "measured": _table(("key", "what it is", "of"), _test_rows()),
@@ -58,7 +59,6 @@ def tables() -> dict[str, dict[str, str]]:
     maps = (row for row in _rows(ScanKeys) if row[0] in OF_MAPS)
     scans = {"scan": _table(("key", "meaning"), scan)}
     return {
-        "config/README.md": study,
         "scans/README.md": scans,
         "docs/keys.md": {**study, **scans, "map": _table(("key", "meaning"), maps)},
         "docs/atlas.md": {

@@ -38,6 +38,8 @@ class Claim:
         "one", or "several" if it needs several joints.
     shown_in : str
         Figure that shows it; may be empty.
+    check : bool
+        True if no surface can refute it: it checks the solver, and counts among no verdicts.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Claim:
     plastic: bool = False
     joints: str = "one"
     shown_in: str = ""
+    check: bool = False
 
 
 @cache

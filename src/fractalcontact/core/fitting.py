@@ -1,5 +1,6 @@
 """Straight lines through points, with their intervals."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -80,3 +81,16 @@ def slope_error(x: np.ndarray, error: np.ndarray) -> float:
         return np.nan
     about = x - x.mean()
     return float(np.sqrt(np.sum((about * error) ** 2)) / np.sum(about**2))
+
+
+def slope_with_bounds(x: np.ndarray, values: np.ndarray, bound: np.ndarray) -> Estimate:
+    """Largest slope of a line through values (part,) over x, some of which are lower bounds.
+
+    A line falls faster as values left of its middle rise. So a fit with bounds at small x gives the
+    largest slope that the bounds allow, without a lower end; bounds beyond the middle are left out.
+    """
+    kept = np.isfinite(values)
+    while (beyond := kept & bound & (kept.sum() * x > x[kept].sum())).any():
+        kept &= ~beyond
+    slope = fit_line(x[kept], values[kept]).slope
+    return replace(slope, low=-np.inf) if slope.known and bound[kept].any() else slope

@@ -109,13 +109,13 @@ class SpecimenSettings:
         key(
             "keep (outlying cells stay), mask (they become missing) or fill (they, lone spikes "
             "and deep overlaps are filled)",
+            unsaid="`keep`; `fill` of one face against its own match",
             default="keep",
         ),
     ]
     """`keep`: outlying cells are counted and shown, not altered. `mask`: they become missing.
-    `fill`: outlying cells, lone spikes and deep overlaps of two faces (`scans/README.md`) are
-    filled from the cells around. One face against its own match (`opposite: match`) fills them
-    unless told otherwise: each spike would meet its own copy an offset away"""
+    `fill`: outlying cells, lone spikes and deep overlaps of two faces are filled from the cells
+    around"""
     fill_holes: Annotated[
         int,
         key(
@@ -160,8 +160,7 @@ class SpecimenSettings:
     """multiples k of the scan's spacing; every k-th node is kept"""
     surface_range: Range
     """`[smallest, largest]` lag of the Delta_g fits, or `auto`: 4 cells to an eighth of the
-    side, or to a quarter of a roll-off that is seen (then from 2 cells if need be). A stated
-    range is used as it is, with a warning if it reaches beyond that quarter"""
+    side, or to a quarter of a roll-off that is seen"""
 
 
 @dataclass(frozen=True)
@@ -207,9 +206,8 @@ class JointSettings:
         ),
     ] = field(default=FREE, kw_only=True)
     """what lies beyond the edges of the window: `free`, an unloaded half-space, as in the paper;
-    `mirrored`, its reflection, so that it is the section of a column between frictionless walls, as
-    a laboratory specimen is; `periodic`, its repetition, which has a seam. Only a `free` window
-    settles as a whole (w_b)"""
+    `mirrored`, its reflection, as of a column between frictionless walls; `periodic`, its
+    repetition, which has a seam"""
 
 
 @dataclass(frozen=True)
@@ -252,9 +250,9 @@ class StateSettings(ContactSettings):
     seating_pressure: Annotated[
         Pressure, key("a pressure with its unit, such as 0.25 MPa", default="0.25 MPa")
     ]
-    """nominal pressure from which closure and its laws are counted, as a laboratory seats its
-    specimen. The seat is, at each offset, the first of `loads` from this pressure on with 10
-    nodes or more and half of the force or more on sound cells of the scans"""
+    """nominal pressure from which closure and its laws are counted. The seat of an offset is the
+    first of `loads` from this pressure on with 10 nodes or more and half of the force on sound
+    cells"""
 
 
 @dataclass(frozen=True)
@@ -346,6 +344,7 @@ class ReportSettings(StrengthSettings):
     figures and in `study_comparison` of the atlas"""
     chosen_for: dict[str, str]
     capped_variant: bool
+    known_contact: bool
 
 
 @dataclass(frozen=True)
@@ -358,11 +357,9 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings
         StatedAs(Literal[0] | Annotated[int, Field(ge=3, le=1000)]),
         key("0 for none, or a number of twins of the scan from 3 to 1000", unsaid="0"),
     ]
-    """of a scan: number of twins (0, or 3 or more), random surfaces with the measured spectrum,
-    solved in the reported direction and offset alone. Their spread says how far the scan's
-    numbers may differ from those of the whole joint ([Twins of a
-    scan](../docs/twins.md)). In `defaults` it concerns scans alone; an
-    embedded specimen has `realisations`"""
+    """of a scan: number of [twins](twins.md) (0, or 3 or more), random surfaces with its spectrum,
+    whose spread says how far the whole joint may differ. An embedded specimen has
+    `realisations`"""
 
 
 @dataclass(frozen=True)

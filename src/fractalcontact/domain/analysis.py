@@ -226,7 +226,7 @@ def _ordinary(box, spacing) -> dict:
 
 def scaling_over_resolutions(
     curves: xr.Dataset,
-    domains: xr.Dataset,
+    counts: xr.Dataset,
     spacing: float,
     *,
     left: xr.DataArray | None = None,
@@ -235,7 +235,7 @@ def scaling_over_resolutions(
     """Renormalisation over resolutions: Delta_sigma from A_r(s), compared with that of box counts.
 
     ``curves`` has ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction,
-    offset, resolution, normal_force); of ``domains``, from :func:`analyse_domains`, the box counts
+    offset, resolution, normal_force); of ``counts``, from :func:`analyse_domains`, the box counts
     at the scan's own resolution are used. ``spacing`` is that of the scan, ``fit_range`` the
     smallest and largest spacing s of the fits, mm, all by default; ``left`` comes from
     :func:`states.left_out.left_of_fields`, and without it there is no interval.
@@ -261,7 +261,7 @@ def scaling_over_resolutions(
     result["sigma_n_raw"].attrs = cf_attrs("MPa", "F / A_r of the area not corrected for its edge")
     result["fitted_area"] = result["hausdorff_measure"] * s ** (2 - result["delta_sigma"])
     result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law of delta_sigma")
-    finest = domains.sel(resolution=domains["resolution"].min())
+    finest = counts.sel(resolution=counts["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result.update(_reasons(result, finest))
     result["spacing"] = s

@@ -38,27 +38,27 @@ _TABLE = {
 _POWERS = {"morisita_exponent": ("1", "x of Morisita's index I ~ v^x over all offsets v")}
 
 
-def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
+def cluster_laws(clusters: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
     """Sizes of clusters with their power law, and Morisita's index as a power of the offset.
 
-    ``domains`` has the numbers of :func:`domain.clusters.cluster_statistics` over (direction,
+    ``clusters`` has the numbers of :func:`domain.clusters.cluster_statistics` over (direction,
     offset, resolution, normal_force), ``nodes`` the nodes in contact in that order. Only
     Morisita's law leaves out domains of fewer than `RESOLVED_NODES`. ``spacing`` is that of the
     scan, mm.
     """
-    cell = (domains["resolution"] * spacing) ** 2
-    area = 2.0 ** domains["octave"] * cell
+    cell = (clusters["resolution"] * spacing) ** 2
+    area = 2.0 ** clusters["octave"] * cell
     # Counts are summed from the largest clusters down.
-    counts = domains["cluster_octaves"].transpose(..., "octave").values
+    counts = clusters["cluster_octaves"].transpose(..., "octave").values
     # The index of random nodes is 1 in the mean.
-    reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
-    used, powers = localisation(domains, nodes)
+    reach = special.ndtri((1 + CONFIDENCE) / 2) * clusters["morisita_scatter"]
+    used, powers = localisation(clusters, nodes)
     values = {
         "cluster_area": area,
         "clusters_at_least": np.cumsum(counts[..., ::-1], axis=-1)[..., ::-1],
-        "cluster_law_count": _law_count(domains, area),
+        "cluster_law_count": _law_count(clusters, area),
         "cluster_law_followed": follows_law(
-            domains["cluster_fit_n"], domains["cluster_fit_distance"]
+            clusters["cluster_fit_n"], clusters["cluster_fit_distance"]
         ),
         "morisita_by_chance_low": 1 - reach,
         "morisita_by_chance_high": 1 + reach,
@@ -71,22 +71,22 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
     return xr.Dataset(labelled(_TABLE, ordered) | powers)
 
 
-def localisation(domains: xr.Dataset, nodes: np.ndarray) -> tuple[xr.DataArray, dict[str, tuple]]:
+def localisation(clusters: xr.Dataset, nodes: np.ndarray) -> tuple[xr.DataArray, dict[str, tuple]]:
     """States in the fit of Morisita's index I ~ v^x, and ``morisita_exponent`` with its interval.
 
-    The arguments are those of :func:`cluster_laws`; of ``domains`` only ``morisita`` is read.
+    The arguments are those of :func:`cluster_laws`; of ``clusters`` only ``morisita`` is read.
     """
-    offset, index = domains["offset"], domains["morisita"]
+    offset, index = clusters["offset"], clusters["morisita"]
     used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
     used_states = {"offset": offset, "index": index.where(used)}
     return used, per_curve(used_states, _power_of_offset, _POWERS, along="offset")
 
 
-def _law_count(domains, area):
+def _law_count(clusters, area):
     """Clusters by the power law of their sizes, from the octave of the smallest one fitted on."""
-    smallest, largest = domains["cluster_fit_min"], domains["cluster_fit_max"]
+    smallest, largest = clusters["cluster_fit_min"], clusters["cluster_fit_max"]
     first = area.where(within(area, 0.0, smallest)).max("octave")
-    law = domains["cluster_fit_n"] * (area / first) ** -domains["cluster_exponent"]
+    law = clusters["cluster_fit_n"] * (area / first) ** -clusters["cluster_exponent"]
     return law.where(within(area, first, largest))
 
 

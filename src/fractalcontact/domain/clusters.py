@@ -100,10 +100,19 @@ def elongations(domain: np.ndarray) -> np.ndarray:
 
 
 def largest_void(domain: np.ndarray, spacing: tuple[float, float]) -> float:
-    """Diameter of the largest disc about a node that holds no contact, mm; NaN without contact."""
+    """Diameter of the largest disc about a node that holds no contact, mm; NaN without contact.
+
+    The disc lies in the window, whose edges are half a cell beyond the last nodes.
+    """
     if not domain.any():
         return np.nan
-    return 2 * float(scipy.ndimage.distance_transform_edt(~domain, spacing).max())
+    free = scipy.ndimage.distance_transform_edt(~domain, spacing)
+    for axis, (nodes, step) in enumerate(zip(domain.shape, spacing, strict=True)):
+        places = np.arange(nodes) + 0.5
+        edge = step * np.minimum(places, nodes - places)
+        free = np.minimum(free, np.expand_dims(edge, 1 - axis))
+    # A node in contact is at no distance from it.
+    return 2 * float(free.max())
 
 
 def octave_counts(sizes: np.ndarray, most: int) -> np.ndarray:

@@ -10,9 +10,6 @@ from ..core.limits import NEARLY
 from ..core.verdicts import BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT, LIKE_RANDOM, UNDETERMINED
 from .slope_curves import NOT_COMPARED, Departure
 
-#: All departures.
-DEPARTURES = (BEYOND_BOTH, BEYOND_RANDOM, LIKE_RANDOM, LIKE_CUT, UNDETERMINED)
-
 
 def departs(departure: Departure) -> bool:
     """Departure of a domain from a null model, by significance and by margin.
@@ -23,7 +20,7 @@ def departs(departure: Departure) -> bool:
 
 
 def departure_of(random: Departure, cut: Departure = NOT_COMPARED, *, surface: bool) -> str:
-    """Departure of a domain from its null models, one of :data:`DEPARTURES`, by its local slopes.
+    """Departure of a domain from its null models, by its local slopes.
 
     The curve of local slopes decides alone, as it holds all box sides. The correlation dimension is
     one slope over the smaller of them, which differs only where the curve does: as a second

@@ -184,17 +184,17 @@ def nulls_of_map_states(
     return nulls.assign_coords({name: states[name] for name in names})
 
 
-def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
+def beside_domains(counts: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
     """Table of contact domains with the null models of the map states, missing in other domains.
 
     From :func:`domain.analysis.analyse_domains` and :func:`nulls_of_map_states`.
     """
     order = ("direction", "offset", "resolution", "normal_force")
-    sizes = tuple(domains.sizes[name] for name in order)
+    sizes = tuple(counts.sizes[name] for name in order)
     place = (
-        domains.get_index("direction").get_loc(nulls["direction"].item()),
-        int(np.argmin(np.abs(domains["offset"].values - nulls["offset"].item()))),
-        domains.get_index("resolution").get_loc(nulls["resolution"].item()),
+        counts.get_index("direction").get_loc(nulls["direction"].item()),
+        int(np.argmin(np.abs(counts["offset"].values - nulls["offset"].item()))),
+        counts.get_index("resolution").get_loc(nulls["resolution"].item()),
     )
     added = {}
     for name, values in nulls.data_vars.items():
@@ -205,7 +205,7 @@ def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
         spread = np.full(sizes, "", values.dtype) if words else np.full(sizes, np.nan)
         spread[place] = values.values
         added[name] = xr.Variable(order, spread, values.attrs)
-    return domains.assign(added)
+    return counts.assign(added)
 
 
 def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset, titled
 from ..core.labels import REALISATIONS, TWINS, cf_attrs
-from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import corrected_scaling
@@ -23,10 +23,12 @@ from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..laws.closure import interface_states
 from ..size_effect.division import solvable_parts, spread_windows
+from ..size_effect.laws import RANDOM_VOID
 from ..size_effect.size_exponents import of_usable_sizes, size_exponent
 from ..size_effect.size_law import WINDOW_QUANTITIES
 from ..size_effect.windows import solved_windows
 from ..states.loading import JointLoading
+from ..states.seat import closure_from, seat_of
 from ..states.states import MAP_GAP, forces_of, with_pressure
 from ..states.sweep import contact_states
 from ..surface.embedded import embedded_surface
@@ -81,6 +83,7 @@ EXPONENTS = {
     "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch"),
     "roughness_exponent": ("sigma_z", RESOLVED_NODES, "rms height about the own plane"),
     "void_exponent": ("largest_void", RESOLVED_NODES, "largest void"),
+    "random_void_exponent": ("random_void", RESOLVED_NODES, RANDOM_VOID),
 }
 
 
@@ -147,25 +150,23 @@ def ensemble(
 def _light(settings: EnsembleSettings, area: float) -> EnsembleSettings:
     """Settings with the loads of the ensemble alone, as forces, sub-windows under one."""
     forces = forces_of(settings.loads, area)
-    seated = forces[forces >= settings.seating_pressure * area * (1 - PRESSURE_ROUNDING)]
-    wanted = {*seated[:1], *forces_of(settings.drawn_loads, area), forces[-1]}
+    seat = float(seat_of(forces, settings.seating_pressure * area))
+    wanted = {seat, *forces_of(settings.drawn_loads, area), forces[-1]}
     return replace(
         settings,
-        loads=[(float(force), "force") for force in sorted(wanted)],
+        # All loads of the study may be lighter than the seat, which is NaN then.
+        loads=[(float(force), "force") for force in sorted(filter(np.isfinite, wanted))],
         dilatancy_loads=[settings.map_load],
     )
 
 
 def _add_seated_closure(result: xr.Dataset, seat: float) -> None:
     """Closure from the first load, N, at or above ``seat`` that resolves every realisation."""
-    force = result["normal_force"]
-    heavy = force >= seat * (1 - PRESSURE_ROUNDING)
-    resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation") & heavy
-    common = force.where(resolved).min()
-    closing = result["interface_closure"]
-    seated = closing - closing.where(force == common).sum("normal_force")
+    forces, closing = result["normal_force"].values, result["interface_closure"]
+    resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation").values
+    seated = closure_from(closing.values, forces, float(seat_of(forces, seat, resolved)))
     attrs = cf_attrs("mm", "interface closure from the first load at which all have ten nodes on")
-    result[_SEATED] = seated.where(force >= common).transpose(*closing.dims).assign_attrs(attrs)
+    result[_SEATED] = closing.dims, seated, attrs
 
 
 def _add_eq6(result: xr.Dataset) -> None:
@@ -199,8 +200,8 @@ def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings
 def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     """:data:`STATES` over the loads, and :data:`EXPONENTS`, of one realisation."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
-    mapped = int(loading.cells[0])
-    states = contact_states(loading, settings.resolutions, mapped=mapped, lightly=True)
+    map_cells = int(loading.cells[0])
+    states = contact_states(loading, settings.resolutions, map_cells=map_cells, lightly=True)
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
     place = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
@@ -228,7 +229,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         values[name] = curves[name].sel(place).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
-    composite = loading.composite(mapped)[::finest, ::finest]
+    composite = loading.composite(map_cells)[::finest, ::finest]
     slopes = null_slopes(touching, composite, cell, fit_range=fitted)
     reference = int(np.argmin(np.abs(result["normal_force"].values - _reference(loading))))
     sides = tuple(loading.spacing * finest)

@@ -8,11 +8,11 @@ import xarray as xr
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
-from ..core.limits import PRESSURE_ROUNDING
 from ..core.text import percent
 from ..laws.closure_laws import fit_hyperbola, fit_semi_logarithmic
 from ..laws.seated_laws import within_span
-from ..states.subgrid import SOUND
+from ..states.seat import closure_from, seat_of
+from ..states.state_quantities import SOUND
 
 #: Constants by name: variable of the stage ``closure``, unit, long name.
 CONSTANTS = {
@@ -38,8 +38,8 @@ def closure_constants(
     seating_pressure : float
         That of the study, MPa.
     readings, motions : mapping of str to (variant, load) ndarray, or None
-        From :func:`states.scan_spread.reading_values`, this reading first, and from
-        :func:`states.registration_spread.registration_values`; None of what is no pair.
+        From :func:`error_budget.two_scans.reading_values`, this reading first, and from
+        :func:`error_budget.two_scans.registration_values`; None of what is no pair.
 
     Notes
     -----
@@ -114,11 +114,10 @@ def seated_constants(
     Pressures (load,) and that of the seat are in MPa; ``sound`` (load,) are the states that fits
     take. As of :mod:`laws.seated_laws`.
     """
-    seats = np.flatnonzero(sound & (pressure >= seating_pressure * (1 - PRESSURE_ROUNDING)))
-    if not seats.size:
+    seat = float(seat_of(pressure, seating_pressure, sound))
+    if np.isnan(seat):
         return dict.fromkeys(CONSTANTS, np.nan)
-    seat = pressure[seats[0]]
-    seated = closure - closure[seats[0]]
+    seated = closure_from(closure, pressure, seat)
     fitted = sound & (seated > 0) & (pressure > seat) & within_span(pressure, seat)
     hyperbola = fit_hyperbola(pressure[fitted], seated[fitted], seat)
     logarithm = fit_semi_logarithmic(pressure[fitted], seated[fitted])

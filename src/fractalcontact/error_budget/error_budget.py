@@ -14,12 +14,12 @@ from ..core.reported import states_at
 from ..core.settings import StateSettings
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
+from ..states.other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from ..states.sweep import load_steps
 from .counting import counting_error
 from .derived import with_derived
 from .ensemble_spread import ensemble_spread, position_in_band, seated_spread
 from .hardness import of_the_hardest
-from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
     ABSOLUTE,
     BUDGET_QUANTITIES,

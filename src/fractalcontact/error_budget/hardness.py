@@ -15,14 +15,20 @@ from ..core.datasets import labelled
 from ..core.limits import HARDEST, REFERENCE_PRESSURES
 from ..flow.aperture import crushed_reason
 from ..flow.cubic_law import WAYS, flow_of
+from ..flow.joint_flow import flow_axes
 from ..flow.network import hydraulic_aperture
-from ..joint.joint import sliding_axis
 from ..laws.reference_states import further_pressures, with_curve_stiffness
 from ..laws.seated_laws import at_reference_pressures
+from ..states.state_quantities import state_quantities
 from ..states.state_scalars import aperture
-from ..states.subgrid import state_quantities
 from ..states.sweep import load_steps
-from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_dimension, chosen_loads
+from .refinement import (
+    BUDGET_QUANTITIES,
+    LoadCurve,
+    budget_dimension,
+    chosen_loads,
+    in_order,
+)
 
 _LOADS = ("normal_force",)
 _IF = f"if contacts are {HARDEST:g} times as hard; missing where they are elastic"
@@ -86,8 +92,7 @@ def _solved(
         return values, gaps, flows, np.full(len(REFERENCE_PRESSURES), np.nan)
     loading = curve.loading
     drawn = chosen_loads(curve, loading.settings.drawn_loads)
-    along = "yx"[sliding_axis(loading.direction)] if loading.slides else "x"
-    axes = dict(zip(WAYS, (along, "xy"["yx".index(along)]), strict=True))
+    axes = flow_axes(loading)
     solving = {**loading.solving, "hardness": hardness}
     where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
     further = further_pressures(curve.forces / loading.area) * loading.area
@@ -102,7 +107,7 @@ def _solved(
             continue
         place = int(np.searchsorted(curve.forces, every[number]))
         limits = loading.settings.box_range
-        values[:, place] = [*quantities.values(), budget_dimension(state, limits)]
+        values[:, place] = in_order(quantities, delta_sigma=budget_dimension(state, limits))
         gaps[place] = aperture(state).mean()
         if place in drawn:
             for way, flow in _flows(state, axes).items():

@@ -4,7 +4,7 @@ At s/2 a few loads are solved, at s/4 those of them whose closure changed by mor
 asks for; what lies between is interpolated.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,8 +18,9 @@ from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
 from ..states.loading import JointLoading
 from ..states.numerical_error import NumericalError, closure_numerical_error, numerical_error
+from ..states.state_quantities import STATE_QUANTITIES, state_quantities
 from ..states.states import forces_of
-from ..states.subgrid import STATE_QUANTITIES, state_quantities, subgrid_states, summit
+from ..states.subgrid import subgrid_states, summit
 
 #: Largest grids, in cells: at s/2, at s/4, and at s/4 of a study that requests all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
@@ -31,9 +32,8 @@ TIGHTER = 0.1
 #: Spacings compared, as divisors of the scan's.
 FACTORS = (1, 2, 4)
 
-#: Quantities of the budget, in its order: unit, long name.
-_OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
-BUDGET_QUANTITIES = STATE_QUANTITIES | _OTHERS
+#: Quantities of the budget: unit, long name. Axes ``quantity`` of arrays have their order.
+BUDGET_QUANTITIES = STATE_QUANTITIES | {"delta_sigma": ("1", "Delta_sigma by box counting")}
 #: Variables of the atlas, STAGE/VARIABLE, by quantity.
 PLACES = {
     "closure": "closure/interface_closure",
@@ -182,7 +182,8 @@ def _needing_more(curve, levels, places, asked) -> np.ndarray:
         return places
     if cells > (MAX_CELLS_FULL if asked is None else MAX_CELLS):
         return np.empty(0, int)
-    change = np.abs(levels[1, 0] / levels[0, 0] - 1)
+    closures = levels[:, list(BUDGET_QUANTITIES).index("closure")]
+    change = np.abs(closures[1] / closures[0] - 1)
     return places if asked is None else places[change[places] > asked]
 
 
@@ -204,11 +205,19 @@ def budget_values(
 ) -> list[float]:
     """Values of :data:`BUDGET_QUANTITIES` of a state.
 
-    ``highest`` and ``reference`` as for :func:`states.subgrid.state_quantities`, ``limits`` as for
-    :func:`budget_dimension`.
+    ``highest`` and ``reference`` as for :func:`states.state_quantities.state_quantities`,
+    ``limits`` as for :func:`budget_dimension`.
     """
-    quantities = state_quantities(state, highest, reference)
-    return [*quantities.values(), budget_dimension(state, limits)]
+    return in_order(
+        state_quantities(state, highest, reference),
+        delta_sigma=budget_dimension(state, limits),
+    )
+
+
+def in_order(quantities: Mapping[str, float], *, delta_sigma: float) -> list[float]:
+    """Quantities of a state and its Delta_sigma as an axis ``quantity`` has them."""
+    values = {**quantities, "delta_sigma": delta_sigma}
+    return [values[name] for name in BUDGET_QUANTITIES]
 
 
 def budget_dimension(state: ContactState, limits: tuple[float, float] | None) -> float:
@@ -222,31 +231,41 @@ def budget_dimension(state: ContactState, limits: tuple[float, float] | None) ->
 def _errors(curve, levels, finest) -> Refinement:
     """Errors from the values at all spacings."""
     rise = summit(curve.composite) - float(curve.composite.max())
-    errors = curve_errors(levels, curve.curve["area"].values, curve.decay_length(), rise)
+    by_name = dict(zip(BUDGET_QUANTITIES, levels.swapaxes(0, 1), strict=True))
+    errors = curve_errors(by_name, curve.curve["area"].values, curve.decay_length(), rise)
     solved = finest > 1
     error, limit, order = (
-        np.where(solved, np.array(values), np.nan) for values in zip(*errors, strict=True)
+        np.where(solved, np.array(values), np.nan)
+        for values in zip(*(errors[name] for name in BUDGET_QUANTITIES), strict=True)
     )
     return Refinement(error, limit, order, finest)
 
 
 def curve_errors(
-    levels: np.ndarray, raw_area: np.ndarray, decay_length: np.ndarray, rise: float
-) -> list[NumericalError]:
-    """Numerical errors of each quantity of a load curve.
+    levels: Mapping[str, np.ndarray],
+    raw_area: np.ndarray,
+    decay_length: np.ndarray,
+    rise: float,
+) -> dict[str, NumericalError]:
+    """Numerical errors of a load curve by quantity.
 
-    ``levels`` (3, quantity, normal_force) are at s, s/2 and s/4, quantities in the order of
-    :data:`BUDGET_QUANTITIES`, those after the stiffness or not; NaN where they were not solved. At
-    s the raw area N s^2 (normal_force,) is in mm2, the length sigma_0/(d sigma/d w_int) in mm; the
-    summit of the surface is above its highest node by ``rise``, mm.
+    ``levels`` has by name the :data:`STATE_QUANTITIES`, and Delta_sigma or not, each at s, s/2 and
+    s/4 over the loads (3, normal_force); NaN where it was not solved. At s the raw area N s^2
+    (normal_force,) is in mm2, the length sigma_0/(d sigma/d w_int) in mm; the summit of the surface
+    is above its highest node by ``rise``, mm.
     """
-    closures, separations, areas, stiffnesses, *others = levels.swapaxes(0, 1)
+    areas, stiffnesses = levels["area_corrected"], levels["stiffness"]
     edge = (raw_area - areas[0]) / raw_area
     length = decay_length * edge
-    return [
-        closure_numerical_error(closures[0], separations, length, rise),
-        numerical_error("separation", separations, length),
-        numerical_error("area_corrected", areas, areas[0] * edge),
-        numerical_error("stiffness", stiffnesses, stiffnesses[0] * edge),
-        *(numerical_error(name, other) for name, other in zip(_OTHERS, others, strict=False)),
-    ]
+    edges = {
+        "separation": length,
+        "area_corrected": areas[0] * edge,
+        "stiffness": stiffnesses[0] * edge,
+    }
+    errors = {
+        name: numerical_error(name, values, edges.get(name, 0.0))
+        for name, values in levels.items()
+        if name != "closure"
+    }
+    closure, separations = levels["closure"][0], levels["separation"]
+    return errors | {"closure": closure_numerical_error(closure, separations, length, rise)}

@@ -27,8 +27,8 @@ def contact_dips(
     tip on a flank has the dip of the flank, and exchanging the faces changes nothing.
     """
     axis, sign = sliding_axis(direction), sum(DIRECTION_STEPS[direction])
-    apart = factor * step
-    spacing = apart * direction_spacing(specimen, direction)
+    distance = factor * step
+    spacing = distance * direction_spacing(specimen, direction)
     slopes = []
     for heights, slid in zip(faces(specimen), (cells * sign, 0), strict=True):
         window = list(window_slices(specimen))
@@ -37,7 +37,7 @@ def contact_dips(
         along, other = window[axis], window[1 - axis]
         nodes = np.arange(along.start, along.stop, factor)
         across = across[:, other.start : other.stop : factor]
-        for way in (apart, -apart):
+        for way in (distance, -distance):
             rows, height = nodes + way, across[nodes]
             inside = (rows >= 0) & (rows < len(across))
             neighbour = np.full(height.shape, np.nan)

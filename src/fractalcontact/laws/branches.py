@@ -15,10 +15,11 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import LARGEST_STIFFNESS_ERROR, PRESSURE_ROUNDING, REFERENCE_PRESSURES
+from ..core.limits import LARGEST_STIFFNESS_ERROR, REFERENCE_PRESSURES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
+from ..states.seat import closure_from
 from ..states.settlement import interface_closure, interface_stiffness, window_settlement
 from .closure import determined_closure, stiffness_reason
 from .reference_states import further_pressures, stored_states
@@ -162,10 +163,10 @@ KEPT_BOWL = (
 )
 
 
-def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset) -> xr.Dataset:
+def joint_branches(loading: JointLoading, curves: xr.Dataset, maps: xr.Dataset) -> xr.Dataset:
     """Branches of a joint at the reported offset, over the loads that closure laws are fitted to.
 
-    ``loading`` is at that offset alone, ``curves`` the stage ``closure``, ``mapped`` the fields by
+    ``loading`` is at that offset alone, ``curves`` the stage ``closure``, ``maps`` the fields by
     :func:`states.states.map_states`. Loads end at :data:`core.limits.SEATED_SPAN` times the seating
     pressure: a window that was loaded until all of it crushes tells nothing of a joint in use.
     """
@@ -178,7 +179,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     forces = curve["normal_force"].values
     composite = prefractal(loading.composite(int(cells)), factor)
     space = loading.half_space(composite.shape, factor)
-    loaded = stored_states(composite, space, curve, mapped, loading.solving["hardness"])
+    loaded = stored_states(composite, space, curve, maps, loading.solving["hardness"])
     where = f"specimen {loading.specimen.attrs['name']}"
     pressure = forces / loading.area
     further = np.empty(0) if space.is_free else further_pressures(pressure)
@@ -188,9 +189,6 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     settlement = xr.DataArray(window_settlement(space, forces), dims="normal_force")
     closure = interface_closure(data["closure"], settlement, flush)
     closure = determined_closure(closure, flush).transpose(*_STATES)
-    at_seat = np.isclose(pressure, seating, rtol=PRESSURE_ROUNDING, atol=0)
-    seat = closure[0].where(at_seat).sum(min_count=1)
-    beyond = pressure >= seating * (1 - PRESSURE_ROUNDING)
     compliance = 1 / (data["stiffness"] / loading.area)
     stiffness = interface_stiffness(compliance, settlement / pressure).where(~flush)
     no_total = curve["interface_stiffness_reason"].reset_coords(drop=True)
@@ -214,7 +212,9 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     data = data.drop_vars(["further_stiffness", "further_force"], errors="ignore")
     values = {
         "interface_closure": closure.values,
-        "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
+        "seated_closure": closure_from(
+            closure.values, pressure, seating, on_loading=closure.values[0]
+        ),
         "interface_stiffness": stiffness.values,
         "interface_stiffness_reason": reason.values,
         "reference_stiffness": at_reference,

@@ -149,8 +149,8 @@ def better_law(hyperbola: Hyperbola, semi_logarithmic: SemiLogarithmic) -> Law:
     best = min(misfits, key=misfits.__getitem__)
     if misfits[best] > GOOD_FIT:
         return Law(NEITHER, f"the better one misses by {misfits[best]:.1%} rms of the largest w")
-    apart = max(misfits.values()) - misfits[best]
-    if len(misfits) == 2 and apart <= EQUAL_MISFIT * max(misfits.values()):
+    difference = max(misfits.values()) - misfits[best]
+    if len(misfits) == 2 and difference <= EQUAL_MISFIT * max(misfits.values()):
         return Law(UNDECIDED, f"both miss by {misfits[best]:.1%} rms of the largest w")
     return Law(best, "")
 

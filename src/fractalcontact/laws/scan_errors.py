@@ -37,12 +37,12 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     nodes or more; no fit takes such a state.
     """
     finest = reported.curves(curves)
-    mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
+    shares = finest["suspect_load_share"].isel(normal_force=reported.reference)
     parts = []
-    worst = float(mapped.max())
+    worst = float(shares.max())
     if decided_by_scan(worst):
-        where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
-        at_maps = decided_by_scan(float(reported.at_offset(mapped)))
+        where = _offset_words(shares["offset"].values[decided_by_scan(shares.values)])
+        at_maps = decided_by_scan(float(reported.at_offset(shares)))
         maps = ", the reported offset among them" if at_maps else ""
         parts.append(f"up to {worst:.0%} of the reference load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)

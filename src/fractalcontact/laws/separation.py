@@ -11,7 +11,8 @@ import xarray as xr
 from ..core.datasets import labelled
 from ..core.determined import decided_by_scan
 from ..core.labels import cf_attrs
-from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
+from ..states.seat import seat_of
 from ..states.states import error_attrs
 from .scan_errors import on_sound_cells
 
@@ -88,15 +89,16 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     its load a closure has no value, nor where the state under that load was not solved.
     """
     force = curves["normal_force"]
-    solved = np.isfinite(curves["interface_closure"])
-    heavy = curves["nominal_pressure"] >= seating_pressure * (1 - PRESSURE_ROUNDING)
-    seats = force.where(on_sound_cells(curves) & solved & heavy).min("normal_force")
+    area = float((force / curves["nominal_pressure"])[0])
+    lightest = seating_pressure * area
+    decided = on_sound_cells(curves) & np.isfinite(curves["interface_closure"])
+    dims = [["normal_force"], [], ["normal_force"]]
+    seats = xr.apply_ufunc(seat_of, force, lightest, decided, input_core_dims=dims)
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")
     _add_closure_from(curves, common, "closure_from_common_seat")
-    stated = force.where(heavy).min("normal_force")
-    _add_closure_from(curves, xr.full_like(seats, stated), "closure_from_stated_seat")
-    area = float((force / curves["nominal_pressure"])[0])
+    stated = xr.full_like(seats, float(seat_of(force, lightest)))
+    _add_closure_from(curves, stated, "closure_from_stated_seat")
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:
         none += f" at {seating_pressure:g} MPa or more"

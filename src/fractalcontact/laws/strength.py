@@ -541,7 +541,7 @@ def angle_spread(dilatancy: xr.Dataset, specimen: xr.Dataset) -> float:
 
     Half-width at 95 %: root sum of squares of Student's t times the standard deviation over the
     windows, this one among them, or over its quarters, and of the distance of the farthest reading;
-    from :func:`error_budget.slid_variants.slid_variants`. NaN where the stage has none.
+    from :func:`laws.slid_variants.slid_variants`. NaN where the stage has none.
     """
     if "variant_dilatancy" not in dilatancy:
         return np.nan

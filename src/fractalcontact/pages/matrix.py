@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import pandas as pd
 import xarray as xr
 
-from ..core.claims import claims_of
+from ..core.claims import all_claims, claims_of
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..study.figure_list import SPECIMEN, all_figures
 
@@ -34,7 +34,7 @@ class Cell:
     ``numbers`` decide it, ``note`` and ``explanation`` (what a null model does in the same data)
     stand beside them. It is judged on the specimen, or on realisations of its kind. ``circular``
     says how the specimen was chosen for it; ``figure`` is the name of one that shows it. Both may
-    be empty.
+    be empty. It is not ``counted`` if it checks the solver or the rules, or repeats another.
     """
 
     verdict: str
@@ -44,6 +44,7 @@ class Cell:
     judged_on: str
     circular: str
     figure: str
+    counted: bool
 
     @property
     def sign(self) -> str:
@@ -82,9 +83,21 @@ def merged(matrices: Iterable[Iterable[Row]]) -> list[Row]:
 
 
 def counted(rows: Iterable[Row]) -> dict[str, int]:
-    """Counts of the verdicts that were given, in the order of :data:`SIGNS`."""
-    given = [cell.verdict for row in rows for cell in row.cells.values()]
+    """Counts of the verdicts that count, in the order of :data:`SIGNS`."""
+    given = [cell.verdict for row in rows for cell in row.cells.values() if cell.counted]
     return {verdict: given.count(verdict) for verdict in SIGNS if verdict in given}
+
+
+def controls_of(rows: Iterable[Row]) -> list[str]:
+    """Specimens none of whose verdicts counts: worlds whose truth is known."""
+    cells = [(name, cell.counted) for row in rows for name, cell in row.cells.items()]
+    counting = {name for name, is_counted in cells if is_counted}
+    return list(dict.fromkeys(name for name, _ in cells if name not in counting))
+
+
+def checks_of(rows: Iterable[Row]) -> list[Row]:
+    """Statements that no surface can refute."""
+    return [row for row in rows if all_claims()[row.name].check]
 
 
 def of_study(atlas: xr.DataTree) -> list[Row]:
@@ -106,6 +119,7 @@ def statement_table(study: str, rows: Iterable[Row]) -> pd.DataFrame:
             "claim": row.claim,
             **{name: getattr(cell, name) for name in _WORDS},
             "chosen_for": cell.circular,
+            "counted": cell.counted,
         }
         for row in rows
         for specimen, cell in row.cells.items()
@@ -136,4 +150,4 @@ def _figure_of(claim, judged):
 def _cell(judged, figure):
     words = {name: str(judged[name].item()) for name in _WORDS}
     circular = str(judged["circular_reason"].item()) if judged["circular"] else ""
-    return Cell(**words, circular=circular, figure=figure)
+    return Cell(**words, circular=circular, figure=figure, counted=bool(judged["counted"]))

@@ -50,7 +50,7 @@ from .first_screen import block_of, is_synthetic, quoted_methods
 from .history import history
 from .laboratory import calibration_of, tests_of
 from .matrix import Row as Judged
-from .matrix import counted, matrix_of, merged, of_study, statement_table
+from .matrix import checks_of, controls_of, counted, matrix_of, merged, of_study, statement_table
 from .summary import Sheet, sheet_of, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
@@ -236,6 +236,8 @@ def _index_values(
         "matrix": rows,
         "counted": counted if len(specimens) > _COLUMNS else None,
         "verdicts": counted([*rows, *together]),
+        "controls": controls_of(rows),
+        "checks": checks_of(rows),
         "together": together,
         "maps": [printable(one.attrs["label"], _LONGEST) for one in measured_maps(atlas).values()],
         "cards": cards_of(

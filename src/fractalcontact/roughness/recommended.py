@@ -16,6 +16,8 @@ from .fit_range import LAST_OF_ROLL_OFF
 
 #: The estimator whose value is the answer.
 RECOMMENDED = "roughness_length"
+#: An estimator that rests on other properties of the heights than sigma_z of windows.
+INDEPENDENT = "power_spectrum"
 #: Reason of the choice: on 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9,
 #: its rms error is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum
 #: 0.052), and half its interval 0.12 (0.13, 0.22, 0.14).
@@ -63,6 +65,23 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     return Estimate(reason=reason)
 
 
+def exponent_of_roughness(dimensions: xr.Dataset) -> Estimate:
+    """Exponent H of sigma_z ~ b^H: the one that roughness-length windows have."""
+    if RECOMMENDED not in dimensions["estimator"].values:
+        return Estimate()
+    return Estimate.read(dimensions.sel(estimator=RECOMMENDED), "hurst")
+
+
+def independent_dimension(dimensions: xr.Dataset) -> Estimate:
+    """Delta_g that does not come from sigma_z ~ b^H: the known one, or that of the spectrum."""
+    known = float(dimensions["known_dimension"])
+    if np.isfinite(known):
+        return Estimate(known, known, known)
+    if INDEPENDENT not in dimensions["estimator"].values:
+        return Estimate()
+    return Estimate.read(dimensions.sel(estimator=INDEPENDENT), "dimension")
+
+
 #: Variables of all estimators together: long names.
 _OF_ALL = {
     "dimensions_fitted": "estimators that found a dimension",
@@ -84,13 +103,13 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
     values_of_fits = values_of_fits[np.isfinite(values_of_fits)]
     x, y = (Estimate.read(dimensions, f"hurst_{axis}") for axis in "xy")
     compared = x.known & y.known
-    apart = compared & ((x.low > y.high) | (y.low > x.high))
+    differing = compared & ((x.low > y.high) | (y.low > x.high))
     values = {
         "dimensions_fitted": values_of_fits.size,
         "lowest_dimension": min(values_of_fits, default=np.nan),
         "highest_dimension": max(values_of_fits, default=np.nan),
         "axes_compared": np.sum(compared),
-        "axes_differing": np.sum(apart),
+        "axes_differing": np.sum(differing),
     }
     return labelled({name: ((), "1", words) for name, words in _OF_ALL.items()}, values)
 

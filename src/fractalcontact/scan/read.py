@@ -98,7 +98,7 @@ def read_faces(
         for key in PAIR_KEYS:
             if getattr(given, key) is not None:
                 raise InputError(
-                    f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
+                    f"{lower_path}: key '{key}' is for two faces, and this scan has one; remove it"
                 )
         return read_scan(lower_path, options), None
     lower, upper, given = faces_in_mm(lower_path, upper_path, options)

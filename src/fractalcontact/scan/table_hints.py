@@ -60,7 +60,7 @@ def add_columns(hints: Hints, names: Sequence[str], table: np.ndarray, source: s
         what = "count cells" if counts else "are whole numbers: if they count cells"
         end = "" if counts else "; delete this line if they are lengths"
         hints.ask("spacing", f"x and y {what}{end}")
-        hints.ask("first_row", "where y is smallest, as it is counted" + end)
+        hints.ask("first_row", "bottom: cells are counted from the smallest y" + end)
         hints.optional |= {"spacing", "first_row"}
 
 

@@ -109,9 +109,9 @@ def _matrix(
     for name, numbers in (("row", above), ("column", left)):
         if numbers is not None and len(np.unique(numbers)) < len(numbers):
             raise InputError(
-                f"{where}: its first {name} holds a number twice, so that it holds neither counts "
-                "nor coordinates; write another 'axes' into the sidecar, and tables under one "
-                "another into files of their own"
+                f"{where}: its first {name} repeats a number, so that it has neither counts nor "
+                "coordinates; write another 'axes' into the sidecar. If the file has several "
+                "tables, put each into its own file"
             )
         if numbers is not None:
             _step(numbers, name, where)

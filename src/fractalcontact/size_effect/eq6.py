@@ -85,12 +85,12 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     and the verdict is "ambiguous". The composite topography of a sub-window is loaded as it lies,
     see :func:`size_effect.windows.window_states`.
     """
-    mapped = loading.at_map_offset()
+    loading = loading.at_map_offset()
 
     def estimate(whole: xr.Dataset, domains: np.ndarray, parts: Sequence[int]) -> xr.Dataset:
-        return _dimensions(mapped, whole, domains, parts)
+        return _dimensions(loading, whole, domains, parts)
 
-    states, domains = solve_sub_windows(mapped, divisions(mapped.shape), estimate)
+    states, domains = solve_sub_windows(loading, divisions(loading.shape), estimate)
     of_windows = ["nodes", "nodes_error", "interface_closure", "bulk_compliance"]
     of_windows += ["whole_area", "whole_area_sampling", "whole_left"]
     result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states, domains))

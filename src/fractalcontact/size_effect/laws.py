@@ -35,6 +35,9 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
+#: A null model of the voids, in words.
+RANDOM_VOID = "the largest void among as many random nodes"
+
 #: Means without the part of the bulk; below 0 they mean nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
@@ -70,9 +73,9 @@ def size_laws(
 
     ``states`` are those of :func:`size_effect.windows.window_states`, ``roughness`` is the JRC of
     the face as used in Barton's law (``jrc_used`` of :func:`joint.jrc.profile_roughness`; NaN for
-    a joint that does not slide), and ``dimension`` Delta_g of the face: eq. 2 expects H = 3 -
-    Delta_g. The fits of sigma_z take sides b within ``fit_range``, mm, by default from
-    `FIRST_FITTED_CELLS` cells to `LAST_FITTED_FRACTION` of the window.
+    a joint that does not slide), and ``dimension`` a Delta_g of the face that does not come from
+    sigma_z: eq. 2 expects H = 3 - Delta_g. The fits of sigma_z take sides b within ``fit_range``,
+    mm, by default from `FIRST_FITTED_CELLS` cells to `LAST_FITTED_FRACTION` of the window.
 
     Eq. 2: ``hurst`` (offset) of the composite topography, ``face_hurst`` and ``expected_hurst``,
     and the curves they come from. Closure: ``interface_closure``, ``interface_compliance``,
@@ -112,6 +115,8 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     heights = states["sigma_z"].broadcast_like(nodes).transpose(*dims)
     for values, exponent, words in (
         (states["largest_void"].transpose(*dims), "void_exponent", "the largest void"),
+        (states["random_void"].transpose(*dims), "random_void_exponent", RANDOM_VOID),
+        (states["mean_gap"].transpose(*dims), "gap_exponent", "the mean gap"),
         (heights, "roughness_exponent", "sigma_z about the own plane"),
     ):
         usable = values.copy(data=of_usable_sizes(values.values, nodes.values, RESOLVED_NODES))

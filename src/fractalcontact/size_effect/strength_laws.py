@@ -1,6 +1,5 @@
 """Shear strength over the side b of a joint, at one v and at one v/b (sect. 5)."""
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -9,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS, fit_line
+from ..core.fitting import MIN_POINTS, slope_with_bounds
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
@@ -89,9 +88,9 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         np.any(_at_fractions(offset, side.values, intervals) > 0, axis=2)
         for intervals in (truncated, raised)
     )
-    apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
+    in_steps = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
     strengths = result["strength_at_equal_v_over_b"]
-    strengths = strengths.where(apart & strengths.copy(data=~at_most))
+    strengths = strengths.where(in_steps & strengths.copy(data=~at_most))
     name = "strength_at_equal_v_over_b"
     bounds = strengths.copy(data=at_least)
     curves = {"strength": strengths, "bound": bounds, "side": side}
@@ -101,7 +100,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     )
     name = "slope_at_equal_v_over_b"
     words = f"exponent of {name} against b"
-    add_law(result, f"{name}_exponent", side, result[name].where(apart), words)
+    add_law(result, f"{name}_exponent", side, result[name].where(in_steps), words)
     of_truncated = {
         "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
         "truncated_fraction_at_equal_v_over_b": mean_interval(
@@ -225,16 +224,9 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _largest_exponent(strength: np.ndarray, bound: np.ndarray, side: np.ndarray) -> Estimate:
-    """Exponent of strengths (part,) against b, some of which are lower bounds.
-
-    A line falls faster as values left of its middle rise. So a fit with bounds at small sizes gives
-    the largest exponent that the bounds allow; bounds at sizes beyond the middle are left out.
-    """
-    x, kept = np.log(side), strength > 0
-    while (beyond := kept & bound & (kept.sum() * x > x[kept].sum())).any():
-        kept &= ~beyond
-    slope = fit_line(x[kept], np.log(strength[kept])).slope
-    return replace(slope, low=-np.inf) if slope.known and bound[kept].any() else slope
+    """Exponent of strengths (part,) against b, some of which are lower bounds."""
+    positive = np.where(strength > 0, strength, np.nan)
+    return slope_with_bounds(np.log(side), np.log(positive), bound)
 
 
 def _add_whole_window(

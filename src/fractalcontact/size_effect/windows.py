@@ -15,6 +15,7 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import JointSettings
 from ..domain.clusters import largest_void
+from ..domain.random_nodes import random_nodes
 from ..joint.joint import sliding_axis
 from ..states.loading import JointLoading
 from ..states.settlement import interface_closure
@@ -38,7 +39,8 @@ STATES = {
     "interface_compliance": ("mm/MPa", "compliance of the interface d w_int / d sigma"),
     "mean_gap": ("mm", "mean gap of the sub-window"),
     "nodes": ("1", "nodes in contact"),
-    "largest_void": ("mm", "diameter of the largest disc about a node that holds no contact"),
+    "largest_void": ("mm", "diameter of the largest disc in the window that holds no contact"),
+    "random_void": ("mm", "diameter of the largest such disc among as many random nodes"),
     "occupied": ("1", "1 where the contact of the whole window has a node in the sub-window"),
     "interface_closure_error": ("mm", f"interface closure w_int, {SOLVER_ERROR}"),
     "area_share_error": ("1", f"real contact area A_r / A_0, {SOLVER_ERROR}"),
@@ -169,6 +171,7 @@ class _Solved(SubWindows):
         area = state.space.cell_area * rows * columns
         flush, settlement = self.flush[window], self.settlement[step]
         errors, stiffness = state_errors(state, state.slope), state.stiffness
+        nodes = int(np.count_nonzero(state.in_contact))
         numbers = {
             "closure": state.closure,
             "interface_closure": interface_closure(state.closure, settlement, flush),
@@ -177,8 +180,12 @@ class _Solved(SubWindows):
             "stiffness": stiffness,
             "corrected_area_share": state_area(state) / area,
             "mean_gap": 0.0 if flush else state.gap.mean(),
-            "nodes": np.count_nonzero(state.in_contact),
+            "nodes": nodes,
             "largest_void": largest_void(state.in_contact, state.space.spacing),
+            "random_void": largest_void(
+                random_nodes(state.space.shape, nodes, np.arange(rows * columns), window),
+                state.space.spacing,
+            ),
             "interface_closure_error": 0.0 if flush else errors["closure_error"],
             "area_share_error": errors["area_error"] / area,
             "corrected_area_share_error": errors["area_corrected_error"] / area,

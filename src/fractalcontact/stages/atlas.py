@@ -130,7 +130,7 @@ def _together(stages, settings):
         # Measured contact maps belong to the study and are not among the stages of a specimen.
         name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
         for name, stated in settings.items()
-        if not stated["capped_variant"]
+        if not (stated["capped_variant"] or stated["known_contact"])
     }
     if len(own) > 1:
         together["study_statements"] = {WHOLE: judge_study(own, settings)}

@@ -17,9 +17,16 @@ from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
 from ..error_budget.closure_constants import closure_constants
+from ..error_budget.elimination import elimination_alone
 from ..error_budget.error_budget import error_budget
-from ..error_budget.slid_variants import slid_variants
 from ..error_budget.solve_plan import solve_plan
+from ..error_budget.two_scans import (
+    reading_values,
+    registration_spread,
+    registration_values,
+    scan_spread,
+    wider_spread,
+)
 from ..joint.openings import prefractal_openings
 from ..joint.overlap import node_marks
 from ..laws.area import area_laws, joint_statistics
@@ -28,16 +35,14 @@ from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warni
 from ..laws.contact_strength import SAMPLED_BY
 from ..laws.reference_states import reference_stiffness
 from ..laws.scan_errors import load_warning
+from ..laws.slid_variants import slid_variants
 from ..registration.registration_scatter import stored_motions
 from ..roughness.plane_spectrum import amplitude_error
 from ..roughness.recommended import best_dimension
 from ..scan.other_readings import other_readings
 from ..states.contact_fields import contact_fields
-from ..states.elimination import elimination_alone
 from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
-from ..states.registration_spread import registration_spread, registration_values
-from ..states.scan_spread import reading_values, scan_spread, wider_spread
 from ..states.states import (
     DIP,
     chosen_offset,
@@ -77,7 +82,7 @@ def state_stages(
     of this name, of twins of a scan or of realisations. The branches and the error budget solve
     some states again.
     """
-    states, mapped = combine(parts), map_states(parts)
+    states, maps = combine(parts), map_states(parts)
     spacing, area = cell_side(specimens), nominal_area(specimens)
     e_star = settings.material.e_star
     curves = closure_curves(
@@ -110,36 +115,36 @@ def state_stages(
         settings.map_offset,
     )
     fields = contact_domains(states)
-    domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
-    nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
-    domains = beside_domains(domains, nulls)
+    counts = analyse_domains(fields, spacing, fit_range=settings.box_range)
+    nulls = nulls_of_map_states(maps, spacing, joints["composite"], settings.box_range)
+    counts = beside_domains(counts, nulls)
     if DIP in dilatancy:
-        dilatancy.update(_of_sampling(domains, joints["composite"], loading))
+        dilatancy.update(_of_sampling(counts, joints["composite"], loading))
     left = left_of_fields(fields)
     fitted = settings.scaling_range
-    scaling = scaling_over_resolutions(curves, domains, spacing, left=left, fit_range=fitted)
+    scaling = scaling_over_resolutions(curves, counts, spacing, left=left, fit_range=fitted)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,
         "area": laws,
-        "domains": domains,
+        "domains": counts,
         "contact": contact_fields(fields, parts, joints, settings, area).assign(
             node_marks(specimens, joints)
         ),
         "scaling": scaling.merge(extrapolated_pressure(scaling, float(np.sqrt(area)))),
-        "domain_measures": measures_of_map_states(mapped, spacing),
+        "domain_measures": measures_of_map_states(maps, spacing),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     # Some states are solved again, on finer grids and on unloading, in the reported direction.
     if joint.slides:
         variants = slid_variants(joint, reported.force)
         stages["dilatancy"] = stages["dilatancy"].assign(variants)
-    stated = reference_stiffness(loading, stages["closure"], mapped)
+    stated = reference_stiffness(loading, stages["closure"], maps)
     stages["closure"] = stages["closure"].assign(stated)
     budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {
-        "branches": joint_branches(loading, stages["closure"], mapped),
+        "branches": joint_branches(loading, stages["closure"], maps),
         "error_budget": with_pressure(budget, area).merge(elimination_alone(loading)),
         "choices": plan.assign(requested_accuracy(solver)),
     }
@@ -200,10 +205,10 @@ def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Repor
 
 
 def _of_sampling(
-    domains: xr.Dataset, composites: xr.DataArray, loading: JointLoading
+    counts: xr.Dataset, composites: xr.DataArray, loading: JointLoading
 ) -> dict[str, xr.DataArray]:
     """Variables of :data:`laws.contact_strength.SAMPLED_BY`; the amplitude is at one offset."""
-    clusters = domains["clusters"].sel(resolution=domains["resolution"].min(), drop=True)
+    clusters = counts["clusters"].sel(resolution=counts["resolution"].min(), drop=True)
     clusters = clusters.rename(direction="contact_direction")
     (offset,) = loading.offsets
     composite = states_at(composites, offset=offset).values

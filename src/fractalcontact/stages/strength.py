@@ -12,7 +12,7 @@ from ..core.settings import ReportSettings, StrengthSettings
 from ..core.window import cell_side, nominal_area
 from ..laws.strength import joint_strength
 from ..roughness.fit_range import MIN_CELLS
-from ..roughness.recommended import best_dimension
+from ..roughness.recommended import independent_dimension
 from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
 from ..statements.comparison import specimen_row
@@ -68,5 +68,5 @@ def _size_laws(stages: Mapping[str, xr.Dataset], settings: StrengthSettings) -> 
     lags = settings.surface_range
     if lags is None and np.isfinite(surface["roll_off"]):
         lags = MIN_CELLS * cell_side(specimens), float(surface["range_max"])
-    dimension = best_dimension(surface)
+    dimension = independent_dimension(surface)
     return joint_by_size(stages["window_states"], specimens, dimension, lags, settings.material)

@@ -51,79 +51,92 @@ def compliance_rises_at_first(joint: Joint, evidence: Evidence) -> Finding:
 def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
     """Range of the compliance of the interface over offsets a factor of three apart.
 
-    The claim holds where such a stretch of offsets beyond the correlation length has a range whose
-    interval lies within the margin. Neighbouring offsets would agree in any joint. One specimen is
-    judged at every load, realisations at the reference load.
+    The offsets begin beyond the correlation length, where the faces still correlate: once they do
+    not, two unrelated faces meet at any v, and the curves overlap in any joint. The claim holds
+    where the range of such a stretch of offsets lies within the margin. One specimen is judged at
+    every load, realisations at the reference load.
     """
-    v, margin = evidence.offsets(), all_claims()["curves_overlap"].margin
-    beyond = joint.between(v) | joint.unrelated(v)
 
-    def spread(force):
-        findings = []
-        for part in _stretches(v, beyond):
-            change, n = evidence.spread_over("compliance", part, force)
-            if n >= MIN_POINTS and change.known:
-                findings.append(level(change, _COMPLIANCE, v[part], margin))
-        wanted = (
-            f"no three offsets from v to {compact(MIN_SPREAD, 6)} v beyond the correlation length"
-        )
+    def spread(force: float) -> Finding:
+        findings = [finding for _, finding in _levels(joint, evidence, force)]
         order = (HOLDS, UNDETERMINED, FAILS)
-        nothing = Finding(UNDETERMINED, wanted)
+        nothing = Finding(UNDETERMINED, _NO_STRETCH)
         return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)
 
-    return under_every_load(joint, spread, evidence.judged_forces)
+    finding = under_every_load(joint, spread, evidence.judged_forces)
+    v = evidence.offsets()
+    unrelated, n = evidence.spread_over("compliance", joint.unrelated(v), joint.force)
+    if n < MIN_POINTS or not unrelated.known:
+        return finding
+    percent = number(unrelated.mapped(lambda end: 100 * end), 0)
+    lost = compact(v[joint.unrelated(v)][0])
+    words = f"from v = {lost} mm on, where two unrelated faces meet, it varies by {percent} %"
+    return finding._replace(explanation=words)
 
 
-def _stretches(v: np.ndarray, chosen: np.ndarray) -> list[np.ndarray]:
-    """Masks of the offsets from each chosen one up to the first that is a factor beyond it."""
-    stretches = []
-    for first in v[chosen]:
-        far = np.flatnonzero(chosen & (v >= MIN_SPREAD * first * (1 - ROUNDING)))
-        if far.size:
-            stretches.append(chosen & (v >= first) & (v <= v[far[0]]))
-    return stretches
+#: Reason why no stretch of offsets is judged.
+_NO_STRETCH = (
+    f"no three offsets from v to {compact(MIN_SPREAD, 6)} v that begin beyond the correlation "
+    "length while the faces correlate"
+)
+
+
+def _levels(joint: Joint, evidence: Evidence, force: float) -> list[tuple[np.ndarray, Finding]]:
+    """Stretches of offsets (n,) bool, and whether the compliance is level there under a load."""
+    v, margin = evidence.offsets(), all_claims()["curves_overlap"].margin
+    beyond = joint.between(v) | joint.unrelated(v)
+    levels = []
+    for first in v[joint.between(v)]:
+        far = np.flatnonzero(v >= MIN_SPREAD * first * (1 - ROUNDING))
+        if not far.size:
+            continue
+        part = beyond & (v >= first) & (v <= v[far[0]])
+        change, n = evidence.spread_over("compliance", part, force)
+        if n >= MIN_POINTS and change.known:
+            levels.append((part, level(change, _COMPLIANCE, v[part], margin)))
+    return levels
 
 
 @of_a_kind
 def compliance_rises_again(joint: Joint, evidence: Evidence) -> Finding:
-    """Change of the compliance as the correlation of the faces is lost.
+    """Rise of the compliance after a plateau, as the correlation of the faces is lost.
 
-    The mean logarithm over the offsets without correlation is compared with that over the offsets
-    beyond the correlation length at which the faces still correlate (if there is none, the last one
-    within that length). The claim holds where the interval lies above the margin. One specimen is
-    judged at every load, realisations at the reference load.
+    A plateau is a stretch of offsets on which the curves overlap, by the rule of that claim. The
+    mean logarithm over the later offsets without correlation is compared with that over the
+    plateau: the claim holds where the interval of the rise lies above the margin, and fails where
+    the compliance rises all along, without a plateau, or not at all. One specimen is judged at
+    every load, realisations at the reference load.
     """
-    v = evidence.offsets()
-    before, after = joint.between(v), joint.unrelated(v)
-    first = joint.initial(v)
-    if not before.any() and first.any():
-        before = v == v[first].max()
     return under_every_load(
-        joint,
-        lambda force: _rise(joint, evidence, force, before, after),
-        evidence.judged_forces,
+        joint, lambda force: _rises_again(joint, evidence, force), evidence.judged_forces
     )
 
 
-def _rise(joint, evidence, force, before, after):
-    """Compliance at the offsets without correlation less that at the ones before, under a load."""
-    rise = evidence.rise_over("compliance", before, after, force)
-    if not rise.known:
-        return Finding(UNDETERMINED, "no offset lies before the loss of correlation, or none after")
-    change = rise.mapped(np.expm1)
-    spread = joint.along("closure")["composite_spread"].values[joint.offsets > 0]
-    v = joint.offsets[joint.offsets > 0]
-    ends = evidence.offsets()[before].max(), evidence.offsets()[after].min()
-    widened = spread[v >= ends[1]].mean() / spread[(v >= v[0]) & (v <= ends[0])][-1] - 1
-    name = "compliance_rises_again"
-    percent = change.mapped(lambda end: 100 * end)
-    return Finding(
-        beyond_margin(change, all_claims()[name].margin, rising=True),
-        f"compliance {number(percent, 0, '+')} %",
-        f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; "
-        f"{margin_words(name)}; "
-        f"sigma_z of the composite topography {number(100 * widened, 0, '+')} %",
-    )
+def _rises_again(joint: Joint, evidence: Evidence, force: float) -> Finding:
+    """Best finding over the stretches of offsets that may be a plateau, under a load."""
+    v, margin = evidence.offsets(), all_claims()["compliance_rises_again"].margin
+    findings = []
+    for part, plateau in _levels(joint, evidence, force):
+        after = joint.unrelated(v) & (v > v[part][-1])
+        rise = evidence.rise_over("compliance", part, after, force)
+        if not rise.known:
+            continue
+        change = rise.mapped(np.expm1)
+        rises = beyond_margin(change, margin, rising=True)
+        verdict = UNDETERMINED
+        if FAILS in (rises, plateau.verdict):
+            verdict = FAILS
+        elif plateau.verdict == HOLDS:
+            verdict = rises
+        words = {HOLDS: "after a plateau", FAILS: "without a plateau before,"}
+        before = words.get(plateau.verdict, "after what may be a plateau")
+        percent = number(change.mapped(lambda end: 100 * end), 0, "+")
+        later = f"after, v = {compact(v[after][0])} mm and more"
+        note = f"before, {plateau.numbers}, {plateau.note}; {later}"
+        findings.append(Finding(verdict, f"{before} compliance changes by {percent} %", note))
+    order = (HOLDS, PARTLY, UNDETERMINED, FAILS)
+    nothing = Finding(UNDETERMINED, f"{_NO_STRETCH}, or no later offset without correlation")
+    return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)
 
 
 @of_a_kind

@@ -16,6 +16,9 @@ from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 #: Reason why statements on the contact area are ill-posed under a hardness.
 BY_CONSTRUCTION = "A_r = F/H, because all contacts yield"
 
+#: Statements on the dilatancy: a specimen that was chosen for one says nothing of the strength.
+_OF_DILATANCY = ("dilatancy_flattens", "dilatancy_flattens_in_two", "dilatancy_is_anisotropic")
+
 
 class Finding(NamedTuple):
     """Verdict on one statement, its numbers, and a remark.
@@ -134,6 +137,27 @@ def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]
         if joint.yields_everywhere:
             return Finding(ILL_POSED, BY_CONSTRUCTION)
         return check(joint)
+
+    return asked
+
+
+def of_unchosen_dilatancy(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]:
+    """A check of a statement on strength, which a specimen chosen for its dilatancy cannot decide.
+
+    The strength is that of the dilatancy angle. The numbers stand, the verdict is undetermined.
+    """
+
+    @wraps(check)
+    def asked(joint):
+        finding = check(joint)
+        chosen = [
+            how for name, how in joint.settings["chosen_for"].items() if name in _OF_DILATANCY
+        ]
+        if not chosen or finding.verdict == UNDETERMINED:
+            return finding
+        numbers = f"{finding.numbers}, but the specimen was chosen for its dilatancy"
+        note = f"{finding.note}; {chosen[0]}"
+        return finding._replace(verdict=UNDETERMINED, numbers=numbers, note=note)
 
     return asked
 

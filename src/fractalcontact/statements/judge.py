@@ -7,7 +7,7 @@ load (and offset) of the contact maps.
 """
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ import xarray as xr
 from ..core.claims import Claim, all_claims, claims_of
 from ..core.directions import slides
 from ..core.labels import cf_attrs
-from ..core.verdicts import UNDETERMINED
+from ..core.verdicts import ILL_POSED, UNDETERMINED
 from . import closure, nulls, scaling, sizes, sliding
 from .findings import Finding, Joint
 
@@ -61,13 +61,13 @@ def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
     :func:`table_of` has it.
 
     ``chosen_for`` of the settings names statements that the specimen was chosen for, and how.
+    The verdicts of a specimen of ``known_contact`` are not counted.
     Attributes ``direction`` and ``force``, N.
     """
     joint = Joint(dict(stages), dict(settings))
     rules = {name: rule_of(name) for name in statements_for(settings)}
-    return table_of(rules, joint, settings["chosen_for"]).assign_attrs(
-        direction=joint.direction, force=joint.force
-    )
+    table = table_of(rules, joint, settings["chosen_for"], counted=not settings["known_contact"])
+    return table.assign_attrs(direction=joint.direction, force=joint.force)
 
 
 def table_of(
@@ -75,6 +75,8 @@ def table_of(
     subject: Any,
     circular: Mapping[str, str],
     asked: str = "this specimen",
+    *,
+    counted: bool = True,
 ) -> xr.Dataset:
     """Statements judged, over (statement,).
 
@@ -87,6 +89,9 @@ def table_of(
         How the specimen was chosen for a statement, by the statement's name.
     asked : str, optional
         The subject in words.
+    counted : bool, optional
+        False of a subject whose contact is known by construction: its verdicts check the rules, and
+        say nothing of joints.
     """
     findings = [rule(subject) for rule in rules.values()]
     claims = [all_claims()[name] for name in rules]
@@ -110,6 +115,10 @@ def table_of(
             np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",
         ),
+        "counted": (
+            counted & ~np.array([claim.check for claim in claims], bool) & ~_repeated(findings),
+            "whether it counts among the verdicts: no check, and no repeated ill-posed question",
+        ),
         "circular_reason": (
             [circular.get(name, "") for name in rules],
             "how the specimen was chosen for it",
@@ -122,6 +131,12 @@ def table_of(
         },
         coords={"statement": list(rules)},
     )
+
+
+def _repeated(findings: Sequence[Finding]) -> np.ndarray:
+    """Findings (n,) bool that call a question ill-posed for the reason of an earlier one."""
+    reasons = [one.numbers if one.verdict == ILL_POSED else "" for one in findings]
+    return np.array([bool(of) and of in reasons[:i] for i, of in enumerate(reasons)], bool)
 
 
 def _note(finding: Finding, claim: Claim) -> str:

@@ -11,9 +11,7 @@ from ..core.limits import CONFIDENCE, LARGEST_MISFIT, LOOSELY, NEARLY
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import (
     FAILS,
-    HOLDS,
     LIKE_RANDOM,
-    PARTLY,
     UNDETERMINED,
 )
 from ..domain import departure
@@ -36,8 +34,8 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
 
     The paper fits hyperbolas to find asymptotes, which the logarithm lacks. The hyperbola is zero
     at the seat, which the logarithm, of two free constants, need not be. The claim holds where
-    the hyperbola misses every curve by 5 % rms or less and by less than the logarithm. It holds in
-    part where it misses some curves by 5 % or less.
+    the hyperbola misses every curve by 5 % rms or less and by less than the logarithm, and in part
+    where it does so at some offsets.
     """
     curves = joint.along("closure")
     curves = curves.sel(resolution=curves["resolution"].min(), offset=joint.offsets > 0)
@@ -56,7 +54,7 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
         dict.fromkeys(compact(100 * end, 2) for end in (hyperbola.min(), hyperbola.max()))
     )
     return Finding(
-        HOLDS if wins == count else PARTLY if close.any() else FAILS,
+        share(wins, count),
         f"from the seat the hyperbola misses by {ends} % rms, by less than the logarithm at "
         f"{wins or 'none'} of {count} offsets",
         f"from first contact it misses by {compact(100 * first, 2)} % (median)",

@@ -10,18 +10,18 @@ from ..core.intervals import mean_difference
 from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
-from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
+from .evidence import ESTIMATES, Evidence, Trend, evidence_of, of_a_kind
 from .findings import (
     Finding,
     Joint,
     beyond_margin,
     margin_words,
     of_the_area,
+    of_unchosen_dilatancy,
     share,
     trend_over_sizes,
     within_margin,
 )
-from .local_slopes import one_slope
 
 #: Least decades of load over which a change with the load is judged.
 MIN_DECADES = 1.0
@@ -60,16 +60,6 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     )
 
 
-@of_a_kind
-def boxes_follow_one_law(joint: Joint, evidence: Evidence) -> Finding:
-    """Local slopes of the box counts at the reference load.
-
-    A power law has one slope at all box sides; a narrow interval of the mean slope is no proof.
-    """
-    finding = one_slope(at_reference(joint, evidence))
-    return finding if finding.verdict == UNDETERMINED else finding._replace(note=evidence.reference)
-
-
 @of_the_area
 @of_a_kind
 def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
@@ -90,24 +80,33 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
 
 
 @of_the_area
-@of_a_kind
-def dimension_rises_by_area(joint: Joint, evidence: Evidence) -> Finding:
-    """Slope of Delta_sigma from A_r(s) over the decades of F, compared with the margin."""
-    return _rise(evidence.trend("area"), "dimension_rises_by_area")
+def dimension_rises_by_area(joint: Joint) -> Finding:
+    """Slope of Delta_sigma from A_r(s) over the decades of F, compared with the margin.
+
+    The specimen is judged where its loads span a decade and those at which every realisation has a
+    Delta_sigma do not.
+    """
+    name, evidence = "dimension_rises_by_area", evidence_of(joint)
+    trends = [(one, one.trend("area")) for one in (evidence, Evidence(joint))]
+    judged, trend = next((pair for pair in trends if _decades(pair[1]) >= MIN_DECADES), trends[0])
+    return judged.of(_rise(trend, name))
 
 
 @of_a_kind
 def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     """Slope of Delta_sigma by boxes over the decades of F, compared with the margin.
 
-    The bearing-area cut of as many nodes explains a rise that is no faster than its own, and
-    changes no verdict: more nodes fill more boxes wherever they lie.
+    Fig. 13 has the slopes 2 - Delta_sigma of eq. 6, which fall as Delta_sigma rises: what the
+    sub-windows of one joint show stands beside the verdict. So does the bearing-area cut of as many
+    nodes, which explains a rise that is no faster than its own: more nodes fill more boxes wherever
+    they lie.
     """
     name, trend = "dimension_rises_by_boxes", evidence.trend("box")
     finding = _rise(trend, name)
     if finding.verdict not in (HOLDS, PARTLY):
         return finding
-    return finding._replace(explanation=_beside_cut(trend.departure, all_claims()[name].margin))
+    cut = _beside_cut(trend.departure, all_claims()[name].margin)
+    return finding._replace(explanation="; ".join(filter(None, (cut, _measured_slopes(joint)))))
 
 
 def _beside_cut(less: Estimate, margin: float) -> str:
@@ -122,38 +121,24 @@ def _beside_cut(less: Estimate, margin: float) -> str:
     return f"{words}: the difference is {number(less, 2, '+')} per decade"
 
 
+def _decades(trend: Trend) -> float:
+    """Decades of load that the values of a trend span; 0 without any."""
+    ends = trend.pressures[[0, -1]] if trend.pressures.size else np.ones(2)
+    return float(np.log10(ends[1] / ends[0]))
+
+
 def _rise(trend: Trend, name: str) -> Finding:
     """Verdict on a slope over the decades of F; undetermined where the loads span less than one."""
     if not trend.slope.known:
         return Finding(UNDETERMINED, "too few loads have a dimension")
     numbers = f"Delta_sigma changes by {number(trend.slope, 2, '+')} per decade of F"
     note = f"{_between(trend.pressures)}; {margin_words(name)}"
-    decades = np.log10(trend.pressures[-1] / trend.pressures[0])
+    decades = _decades(trend)
     if decades < MIN_DECADES:
         few = f"the loads span {number(decades, 1)} decades, {compact(MIN_DECADES, 6)} needed"
         return Finding(UNDETERMINED, f"{numbers}, but {few}", note)
     verdict = beyond_margin(trend.slope, all_claims()[name].margin, rising=True)
     return Finding(verdict, numbers, note)
-
-
-@of_a_kind
-def size_slope_falls_with_load(joint: Joint, evidence: Evidence) -> Finding:
-    """Slope 2 - Delta_sigma of eq. 6 over the decades of F, Delta_sigma by boxes.
-
-    That is how Fig. 13 has its slopes. What sub-windows of one joint show stands beside the
-    verdict.
-    """
-    name, trend = "size_slope_falls_with_load", evidence.trend("box")
-    if not trend.slope.known:
-        return Finding(UNDETERMINED, "too few loads have a dimension")
-    falls = trend.slope.mapped(np.negative, falling=True)
-    numbers = f"2 - Delta_sigma changes by {number(falls, 2, '+')} per decade of F"
-    note = f"{_between(trend.pressures)}; {margin_words(name)}"
-    if np.log10(trend.pressures[-1] / trend.pressures[0]) < MIN_DECADES:
-        few = f"the loads span less than {compact(MIN_DECADES, 6)} decade"
-        return Finding(UNDETERMINED, f"{numbers}, but {few}", note)
-    verdict = beyond_margin(falls, all_claims()[name].margin, rising=False)
-    return Finding(verdict, numbers, note, explanation=_measured_slopes(joint))
 
 
 def _measured_slopes(joint: Joint) -> str:
@@ -169,47 +154,48 @@ def _measured_slopes(joint: Joint) -> str:
 
 
 def _known_loads(estimate: Estimate, pressures: np.ndarray) -> list[tuple[Estimate, float]]:
-    """Estimates and nominal pressures, MPa, of the loads that have one."""
-    return [(estimate[i], pressures[i]) for i in np.flatnonzero(estimate.known)]
+    """Estimates and nominal pressures, MPa, of the loads that have one with an interval."""
+    return [(estimate[i], pressures[i]) for i in np.flatnonzero(np.isfinite(estimate.width))]
 
 
 @of_the_area
 def lines_form_above_one(joint: Joint) -> Finding:
-    """Fraction of the contact in long clusters: loads with Delta_sigma above 1 less those below.
+    """Fraction of the contact in long clusters: states with Delta_sigma above 1 less those below.
 
-    A cluster is long if it is three times as long as wide. Delta_sigma is that by boxes and lies
-    surely on one side of 1. The claim holds where the interval of the difference lies above the
-    margin.
+    A cluster is long if it is three times as long as wide. States are those of all loads and
+    offsets whose Delta_sigma by boxes lies surely on one side of 1. The claim holds where the
+    interval of the difference lies above the margin.
     """
     name = "lines_form_above_one"
-    states = joint.states("domains")
+    states = joint.curves("domains")
     delta, long = Estimate.read(states, "delta_sigma"), states["long_share"].values
     known = np.isfinite(long)
     above, below = known & (delta.low > LINE), known & (delta.high < LINE)
+    counts = f"Delta_sigma is surely above 1 in {above.sum() or 'no'} states, below in "
+    counts += f"{below.sum() or 'none'}"
     if not above.any() or not below.any():
-        return Finding(UNDETERMINED, "no load has a Delta_sigma surely above 1, or none below")
+        return Finding(UNDETERMINED, counts)
     difference = mean_difference(long[above], long[below])
-    ends = [100 * long[side].mean() for side in (below, above)]
+    ends = [100 * long[side].mean() for side in (above, below)]
+    percent = difference.mapped(lambda end: 100 * end)
+    margin = all_claims()[name].margin
+    note = f"{counts}; margin {compact(100 * margin, 6)} %"
     numbers = (
         f"clusters three times as long as wide hold {number(ends[0], 0)} % of the contact where "
-        f"Delta_sigma is below 1 and {number(ends[1], 0)} % where it is above"
+        f"Delta_sigma is above 1 and {number(ends[1], 0)} % where it is below; they differ by "
+        f"{number(percent, 0, '+')} %"
     )
-    loads = (
-        f"Delta_sigma is above 1 at {loads_of(int(above.sum()), above.size)} and below at "
-        f"{int(below.sum())}"
-    )
-    note = f"{loads}; {margin_words(name)}"
     if not np.isfinite(difference.width):
-        return Finding(UNDETERMINED, numbers, f"{note}; three loads needed")
-    verdict = beyond_margin(difference, all_claims()[name].margin, rising=True)
-    return Finding(verdict, numbers, note)
+        return Finding(UNDETERMINED, numbers, f"{note}; three states needed")
+    return Finding(beyond_margin(difference, margin, rising=True), numbers, note)
 
 
 def elimination_finds_the_set(joint: Joint) -> Finding:
     """Nodes that elimination drops and that interpenetrate, on a coarse grid of this joint.
 
     The paper's algorithm drops nodes in tension and takes none back, so that each domain lies in
-    the one before. The claim holds where no dropped node interpenetrates at any of three closures.
+    the one before. With Love's kernel this is a theorem, so that the row checks the solver: no
+    dropped node interpenetrates at any of three closures.
     """
     test = joint["error_budget"]
     wrong, steps = test["elimination_wrong"].values, test["elimination_steps"].values
@@ -352,6 +338,7 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
     return trend_over_sizes(name, exponent, f"x = {number(exponent)}", source, rising=False)
 
 
+@of_unchosen_dilatancy
 def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size at equal v/b, as laboratories compare sizes.
 
@@ -371,17 +358,17 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     margin = all_claims()[name].margin
     verdicts = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
     clear, no_fall = verdicts.count(HOLDS), verdicts.count(FAILS)
-    falls = clear + verdicts.count(PARTLY)
+    falls, clearly = clear + verdicts.count(PARTLY), clear or "none"
     # Undetermined cases do not count.
     verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     bounded = int(np.isneginf(strength.low).sum())
     return Finding(
         HOLDS if clear == cases else verdict,
         f"tau falls at equal v/b in {falls or 'none'} of {cases} cases"
-        f"{f', by more than the margin in {clear}' if clear < falls else ''}"
+        f"{f', by more than the margin in {clearly}' if clear < falls else ''}"
         f"{f', surely not in {no_fall}' if no_fall else ''}",
         f"x = {_ends(strength)} at equal v/b; {margin_words(name)}"
-        f"{f', bounds from above in {bounded} cases with truncated angles' if bounded else ''}",
+        f"{f', bounds from above in {bounded} of them with truncated angles' if bounded else ''}",
         explanation=_at_equal_v(windows),
     )
 

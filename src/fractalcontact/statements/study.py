@@ -26,7 +26,7 @@ def judge_study(
     """Judge the statements that need several specimens, as :func:`judge.table_of` has it.
 
     ``stages`` and ``settings`` are by specimen, with ``surface_dimension``, without specimens that
-    only repeat another under a hardness.
+    only repeat another under a hardness, or whose contact is known.
     """
     joints = {name: Joint(dict(parts), dict(settings[name])) for name, parts in stages.items()}
     return table_of(

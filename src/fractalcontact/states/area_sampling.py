@@ -36,8 +36,8 @@ def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
     of_contact = labels[touching] - 1
     area = np.bincount(of_contact, cell_areas(touching))
     force = np.bincount(of_contact, np.asarray(pressure)[touching])
-    apart = area / area.sum() - force / force.sum()
-    variance = contacts / (contacts - 1) * np.sum(apart**2)
+    difference = area / area.sum() - force / force.sum()
+    variance = contacts / (contacts - 1) * np.sum(difference**2)
     return float(t_quantile(contacts - 1) * np.sqrt(variance))
 
 

@@ -1,6 +1,6 @@
 """Sub-grids: the same surface on finer grids, and its contact states there."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,27 +9,7 @@ from numpy.typing import ArrayLike
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
-from ..core.determined import decided_by_scan
-from ..core.limits import PRESSURE_ROUNDING, RESOLVED_NODES
-from ..joint.joint import prefractal
-from ..joint.overlap import suspect_load_share
-from .loading import JointLoading, Variant
-from .settlement import interface_closure, interface_stiffness, window_settlement
-from .state_scalars import resolved_slope, state_area
 from .sweep import load_steps
-
-#: Quantities of a state with a numerical error: unit, long name. They have the names that the error
-#: budget publishes: `closure` and `stiffness` are of the interface alone, those of
-#: :data:`states.states.SCALARS` of interface and blocks together.
-STATE_QUANTITIES = {
-    "closure": ("mm", "closure w_int from first touch"),
-    "separation": ("mm", "separation of the mean planes, delta_r - w"),
-    "area_corrected": ("mm2", "real contact area, corrected for its edge"),
-    "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),
-}
-
-#: Key of what says whether fits take a state: 1 or 0.
-SOUND = "sound"
 
 #: Nodes around which the summit of the spline is looked for, and points per cell there. The spline
 #: rises above its nodes by a few tenths of the difference between neighbours, so that a node much
@@ -92,68 +72,3 @@ def subgrid_states(
     highest = float(heights.max())
     for state in load_steps(heights, finer, forces, solving, f"{where}, spacing / {factor}"):
         yield state, highest
-
-
-def composite_quantities(
-    loading: JointLoading, variants: Iterable[Variant], forces: np.ndarray, factor: int = 1
-) -> dict[str, np.ndarray]:
-    """:data:`STATE_QUANTITIES` and :data:`SOUND` (variant, load) of variants of a joint.
-
-    Every ``factor``-th node is taken. The separation is max h - mean h - w: that of the mean planes
-    within the window, which needs no highest node of the mated faces. Raises `NotConverged`.
-    """
-    names, rows = (*STATE_QUANTITIES, SOUND), []
-    for variant in variants:
-        composite = prefractal(variant.composite, factor)
-        suspicious = prefractal(variant.suspicious, factor)
-        space = loading.half_space(composite.shape, factor)
-        where = f"specimen {loading.specimen.attrs['name']}, {variant.name}"
-        states = load_steps(composite, space, forces, loading.solving, where)
-        datum = float(composite.max()), float(composite.mean())
-        of_loads = [
-            state_quantities(state, *datum) | {SOUND: is_sound(state, suspicious)}
-            for state in states
-        ]
-        rows.append([[of_state[name] for name in names] for of_state in of_loads])
-    table = np.reshape(rows, (len(rows), len(forces), len(names))).astype(float)
-    return dict(zip(names, np.moveaxis(table, -1, 0), strict=True))
-
-
-def closure_from(closure: np.ndarray, forces: np.ndarray, seat: float) -> np.ndarray:
-    """Closures (variant, load) counted from the force of the seat, N; NaN without one and below."""
-    seats = np.flatnonzero(np.isclose(forces, seat, rtol=PRESSURE_ROUNDING, atol=0))
-    if not seats.size:
-        return np.full(closure.shape, np.nan)
-    seated = closure - closure[:, seats[:1]]
-    return np.where(forces >= forces[seats[0]], seated, np.nan)
-
-
-def is_sound(state: ContactState, suspicious: np.ndarray) -> bool:
-    """True of a state that fits take, as :func:`laws.scan_errors.on_sound_cells` of stored ones."""
-    enough = np.count_nonzero(state.in_contact) >= RESOLVED_NODES
-    share = suspect_load_share(state.pressure, suspicious)
-    return bool(enough and not decided_by_scan(share))
-
-
-def state_quantities(
-    state: ContactState, highest: float, reference: float = 0.0
-) -> dict[str, float]:
-    """:data:`STATE_QUANTITIES` of a contact state.
-
-    ``highest`` is the largest height of its composite topography, on its own grid, ``reference``
-    that at zero offset on the scan's grid, from which dilatancy counts, mm. The separation is
-    ``highest - reference - w``. The largest height rises as the grid gets finer, and so does the
-    closure counted from it: their difference is the place of the rigid plane and knows nothing of
-    the summit. The reference is a length of the joint and stays what it is.
-    """
-    space = state.space
-    area = float(np.prod(np.multiply(space.shape, space.spacing)))
-    settlement = float(window_settlement(space, state.force))
-    stiffness = resolved_slope(state).value
-    compliance = area / stiffness if stiffness else np.inf
-    return {
-        "closure": float(interface_closure(state.closure, settlement)),
-        "separation": highest - reference - state.closure,
-        "area_corrected": state_area(state),
-        "stiffness": float(interface_stiffness(compliance, settlement / (state.force / area))),
-    }

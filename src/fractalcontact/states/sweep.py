@@ -113,8 +113,10 @@ def joint_states(
     states = []
     for direction in directions:
         whole = JointLoading.of_joint(specimen, joint, direction, settings, solver)
-        mapped = map_place(joint, settings, direction)
-        states.append(contact_states(whole.at(whole.cells[offsets]), resolutions, mapped=mapped))
+        map_cells = map_place(joint, settings, direction)
+        states.append(
+            contact_states(whole.at(whole.cells[offsets]), resolutions, map_cells=map_cells)
+        )
     return concat_directions(states)
 
 
@@ -122,7 +124,7 @@ def contact_states(
     loading: JointLoading[ContactSettings],
     resolutions: Sequence[int],
     *,
-    mapped: int | None = None,
+    map_cells: int | None = None,
     lightly: bool = False,
 ) -> xr.Dataset:
     """Contact states at some offsets and resolutions, under the loads that are needed.
@@ -134,7 +136,7 @@ def contact_states(
         :func:`states.plan.solved_loads` names, else all.
     resolutions : sequence of int
         Multiples k of the scan's spacing.
-    mapped : int, optional
+    map_cells : int, optional
         Offset of the contact maps in cells, from :func:`map_place`.
     lightly : bool
         Without dips, and with the stiffness at the finest resolution alone.
@@ -177,7 +179,7 @@ def contact_states(
             pressures, gaps = [], []
             suspicious = prefractal(loading.suspect_nodes(n), factor)
             slopes = [] if lightly else loading.contact_dips(n, factor)
-            for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
+            for j, state in _load_curve(loading, n, factor, space, at_maps=n == map_cells):
                 pressures.append(state.pressure.astype(np.float32))
                 gaps.append(aperture(state).astype(np.float32))
                 if of_offsets is not None and j == reference:
@@ -188,7 +190,7 @@ def contact_states(
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious, stiff=stiff).items():
                     scalars[name][0, i, k, j] = value
-            if looked_at and n == mapped:
+            if looked_at and n == map_cells:
                 fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
         if of_offsets is not None:
             words = cf_attrs("mm", "gap g under the reference load")
@@ -215,7 +217,7 @@ def _load_curve(
     factor: int,
     space: HalfSpace,
     *,
-    mapped: bool,
+    at_maps: bool,
 ) -> Iterator[tuple[int, ContactState]]:
     """Places among the loads, and states, that are needed at one offset and resolution."""
     settings, accuracy = loading.settings, loading.solver.accuracy
@@ -225,7 +227,7 @@ def _load_curve(
         forces,
         loading.area,
         first=_in_first_direction(loading),
-        mapped=mapped,
+        at_maps=at_maps,
         factor=factor,
         all_states=accuracy is None,
     )

@@ -74,6 +74,8 @@ def resolve_settings(
         "twins": layers.twins(),
         "block_lengths": sorted(said.get("block_lengths", [])),
         "capped_variant": is_capped_variant(config, name),
+        # Its contact has a known dimension by construction: a control, and no joint.
+        "known_contact": recipe.get("construction") == "cantor-punch",
         "material": material,
         "boundary": said.get("boundary", layers.boundary()),
         "opposite": opposite,
@@ -257,6 +259,12 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
             f"{where}.roll_off: a surface by {construction} has none; write null, or the "
             "construction spectrum"
         )
+    for key, plain in (("anisotropy", 1), ("intermittency", 0)):
+        if construction != "spectrum" and numbers[key] != plain:
+            raise InputError(
+                f"{where}.{key}: a surface by {construction} has none; leave it out, or write the "
+                "construction spectrum"
+            )
     if construction == "cantor-punch" and 3 ** round(math.log(nodes, 3)) != round(nodes):
         raise InputError(
             f"{where}.size: a cantor-punch has 3^n nodes per side, not {round(nodes)}; "

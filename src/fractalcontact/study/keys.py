@@ -21,6 +21,7 @@ from ..core.keys import (
     matching,
     schema_of,
 )
+from ..core.limits import MOST_INTERMITTENT
 from ..core.settings import Settings
 from ..core.tolerance import ACCURACY
 from ..core.units import share_of
@@ -51,17 +52,29 @@ class MaterialKeys(Section):
     """A material."""
 
     modulus: Annotated[Pressure, key("a pressure with its unit, such as 20 GPa")]
+    r"""Young's modulus of both blocks; E\* = E / (2 (1 - nu²))"""
     poisson: Annotated[float, key("Poisson's ratio, above -1 and up to 0.5", gt=-1, le=0.5)]
+    """Poisson's ratio nu, above -1 and up to 0.5"""
     basic_friction_angle: Angle = float("nan")
+    """friction angle of a flat face of the rock, such as `30 deg`; the shear strength needs it"""
     basic_friction_angle_is: Annotated[
         Literal["measured", "assumed"], key("measured or assumed")
     ] = "assumed"
+    """`measured` on flat faces of this rock, or `assumed`: the interval of a strength contains
+    factors of 0.87 to 1.13, or of 0.9 to 1.9 by Barton's law and 5 degrees by the other rules"""
     joint_wall_strength: Annotated[Pressure, key("a pressure with its unit, such as 80 MPa")] = (
         float("nan")
     )
-    hardness: Annotated[Literal["none"] | Pressure, key('a quantity such as "80 MPa", or none')] = (
-        float("nan")
-    )
+    """Barton's JCS, such as `80 MPa`; the shear strength needs it"""
+    hardness: Annotated[
+        Literal["none"] | Pressure,
+        key(
+            'a quantity such as "80 MPa", or none',
+            unsaid="`joint_wall_strength` of a scan that has one; else none",
+        ),
+    ] = float("nan")
+    """largest pressure that a contact bears before it crushes (elastic, perfectly plastic);
+    `none` keeps contacts elastic, as in the paper"""
 
 
 _KEYS: Any = {
@@ -83,13 +96,12 @@ class SettingsKeys(_FromSettings):
             unsaid="required in `defaults`: it holds for a scan whose sidecar states none",
         ),
     ] = ""
-    """a name from `materials`, or `{modulus, poisson, basic_friction_angle,
-    basic_friction_angle_is, joint_wall_strength, hardness}` as above, the last four optional"""
+    """a name from `materials`, or a mapping with the keys of a material"""
     measured: Annotated[
         Tests, key("laboratory tests by kind, closure, flow, dilatancy, shear or strength")
     ] = Tests()
     """laboratory tests of the specimen, by kind: `closure`, `flow`, `dilatancy`, `shear`,
-    `strength`, each a test or a list of tests (below)"""
+    `strength`, each a test or a list of tests"""
 
 
 class EmbeddedKeys(Section):
@@ -123,13 +135,23 @@ class EmbeddedKeys(Section):
     ] = None
     """wavelength above which the spectrum is flat; `null` for none, as it is for all other
     constructions"""
+    anisotropy: Annotated[
+        float, key("distance along y over that along x, from 0.1 to 10", ge=0.1, le=10)
+    ] = 1.0
+    """of a `spectrum`: distance along y over the distance along x within which heights differ as
+    much (default 1: isotropic). The rms slope along x is that along y times `anisotropy` to the
+    power H"""
+    intermittency: Annotated[
+        float, key(f"from 0 to {MOST_INTERMITTENT}", ge=0, le=MOST_INTERMITTENT)
+    ] = 0.0
+    """of a `spectrum`: how unevenly roughness is spread over the face. 0 (default) is a Gaussian
+    surface; 0.15 gives the heavy-tailed slopes of a granite face ([Twins](../docs/twins.md))"""
     seed: Seed
     """the same seed gives the same bits; a `cantor-punch` has no chance in it"""
     realisations: Annotated[int, key("surfaces of the ensemble, from 3 to 1000", ge=3, le=1000)] = 0
-    """number of surfaces of its ensemble (3 or more): its own seed and those that follow, none
-    chosen, solved at the reported offset under a few loads. The paper's statements on joints of
-    a kind are then judged on their mean and its 95 % interval; without `realisations` on the
-    one specimen"""
+    """number of surfaces of its ensemble (3 or more): its own seed and those that follow, solved
+    at the reported offset under a few loads. Statements on joints of a kind are then judged on
+    their mean"""
     chosen_for: Annotated[
         dict[str, Label],
         key("how the specimen was chosen for what the paper says, by statement of the atlas"),
@@ -228,10 +250,9 @@ class SizeEffectKeys(Section):
     ]
     """the same as a fraction of the side, of the arms R and S2; S3 has none"""
     arms: Annotated[ArmsKeys, key("a mapping with the arms R and S1, and S2, S3, W or G if wanted")]
-    """by name (`R` and `S1` at least; `S2`, `S3`, `W`, `G`): `sizes`, nodes per side;
-    `surfaces`, one number for each size; of `R` also `cut_offs`, the shortest wavelengths; of
-    `G` `constructions`, a list of `weierstrass-mandelbrot`, `random-midpoint` and
-    `cantor-punch`. The windows of `W` are cut from surfaces of its largest size"""
+    """by name, `R` and `S1` at least; `S2`, `S3`, `W`, `G`. Each has `sizes` (nodes per side)
+    and `surfaces` (one number for each size), `R` also `cut_offs` (shortest wavelengths), `G`
+    also `constructions`"""
 
 
 class SizeStrengthKeys(Section):
@@ -465,51 +486,41 @@ class StudyKeys(Section):
             min_length=1,
         ),
     ] = {}
-    r"""name (up to 200 characters on one line, without `$`): `{modulus, poisson,
-    basic_friction_angle, basic_friction_angle_is, joint_wall_strength, hardness}`. Both blocks
-    have one material: E\* = E / (2 (1 - nu²)). Shear strength needs the angle and the strength
-    (`30 deg`, `80 MPa`: Barton's JCS); without them it is missing. `basic_friction_angle_is` is
-    `measured`, on flat faces of this rock (strength within 13 %), or `assumed` (the default: 0.9
-    to 1.9 times by Barton's law, 5 degrees by the other rules).
-    `hardness` (`80 MPa`) caps the pressure: an
-    elastic-perfectly plastic surface, whose contacts crush; `none` is elastic contact. By
-    default it is the joint wall strength for scans that state one, and none for embedded
-    specimens, as the paper's model is elastic"""
+    """materials by name (up to 200 characters on one line, without `$`)"""
     embedded: Annotated[
         dict[Annotated[str, _SPECIMEN], EmbeddedKeys],
         key("specimens the study makes for itself, by name"),
     ] = {}
     """synthetic specimens of the study itself, by name (up to 220 letters, digits, `_`, `.` and
-    `-`), see below. A name may not differ from another one's, or from a scan's, in upper and
-    lower case alone"""
+    `-`). Two names must differ in more than upper and lower case"""
     defaults: Annotated[
         SettingsKeys | None, key("", unsaid="required where there are specimens")
     ] = None
-    """settings of every specimen, see below"""
+    """settings of every specimen"""
     specimens: Annotated[
         dict[str, SettingsKeys], key("settings that differ from the defaults, by specimen name")
     ] = {}
     """name: settings that differ from the defaults"""
     roll_off: RollOffKeys | None = None
     """synthetic joints with and without a roll-off, to see what makes the plateau of the
-    dilatancy, see below"""
+    dilatancy"""
     size_effect: SizeEffectKeys | None = None
     """synthetic surfaces on which resolution, size and geometry of the contact are varied one
-    by one, see below"""
+    by one"""
     size_strength: SizeStrengthKeys | None = None
-    """synthetic mated joints that slide, whose strength is compared over their size, see below"""
+    """synthetic mated joints that slide, whose strength is compared over their size"""
     estimator_bias: EstimatorBiasKeys | None = None
     """synthetic surfaces of known dimension on which the bias of the estimators of Delta_g is
-    measured, see below"""
+    measured"""
     area_slope: AreaSlopeKeys | None = None
     """synthetic surfaces on which the real contact area at light load is compared with the
-    theories, see below"""
+    theories"""
     speed: SpeedKeys | None = None
-    """solvers and cheaper models timed on test problems, see below"""
+    """solvers and cheaper models timed on test problems"""
     convergence: ConvergenceKeys | None = None
-    """the solver compared with exact solutions, see below"""
+    """the solver compared with exact solutions"""
     stability: StabilityKeys | None = None
-    """solvers judged on test problems that methods fail on, see below"""
+    """solvers judged on test problems that methods fail on"""
     accuracy: Annotated[
         Literal["full"] | AccuracyKeys,
         key(
@@ -518,8 +529,7 @@ class StudyKeys(Section):
         ),
     ] = AccuracyKeys()
     """`{closure, delta_sigma}`: the requested accuracy of a closure, as a fraction of it (`1 %`
-    or `0.01`), and of a Delta_sigma. Or `full`: all states are solved, whatever it costs. See
-    below"""
+    or `0.01`), and of a Delta_sigma. Or `full`: all states are solved, whatever it costs"""
     solver: SolverKeys = SolverKeys()
     grain: GrainKeys = GrainKeys()
 

@@ -24,7 +24,7 @@ def embedded_surface(recipe: Mapping) -> np.ndarray:
     recipe : mapping
         ``size``, ``spacing``, ``rms`` and ``roll_off`` (or None) in mm, ``dimension`` Delta_g,
         ``outline`` ("square" or "disc"), ``construction`` (a key of the schema; a spectrum by
-        default) and ``seed``, as
+        default), ``anisotropy``, ``intermittency`` and ``seed``, as
         :func:`study.configuration.resolve_embedded` gives them.
 
     Returns
@@ -48,6 +48,8 @@ def _self_affine(shape: tuple[int, int], recipe: Mapping) -> np.ndarray:
         seed=recipe["seed"],
         roll_off=recipe["roll_off"],
         rms=recipe["rms"],
+        anisotropy=recipe.get("anisotropy", 1.0),
+        intermittency=recipe.get("intermittency", 0.0),
     )
 
 

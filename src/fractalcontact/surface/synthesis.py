@@ -1,13 +1,15 @@
 """Synthetic self-affine surfaces, from a spectrum.
 
-The surfaces are Gaussian and isotropic, their statistics known beforehand: mathematical joints, and
-twins of specimens that are described but whose scans are not public. They are written as ordinary
-scan files and enter the program through the same door as a measured surface.
+Their statistics are known beforehand: mathematical joints, which are Gaussian and isotropic, and
+twins of specimens that are described but whose scans are not public, which may have the anisotropy
+and the uneven roughness of fractured rock. They are written as ordinary scan files and enter the
+program through the same door as a measured surface.
 """
 
 import numpy as np
 import scipy.fft
 
+from ..core.limits import MOST_INTERMITTENT
 from ..core.mean_plane import without_mean_plane
 
 #: Sides of the grid of a synthetic surface, in sides of the patch cut from it. The Fourier series
@@ -23,14 +25,21 @@ def self_affine(
     rms: float,
     seed: int,
     roll_off: float | None = None,
+    anisotropy: float = 1.0,
+    intermittency: float = 0.0,
 ) -> np.ndarray:
-    """Isotropic, Gaussian, self-affine surface that is not periodic.
+    """Self-affine surface that is not periodic; isotropic and Gaussian by default.
 
     White noise, drawn node by node with ``Generator(PCG64(seed)).standard_normal`` in (y, x) order
     on a grid of `EMBEDDING` times the longer side, is filtered to the power spectral density
     C(q) = q^(-2 (1 + H)) for q > q_r and C(q_r) below, with q_r = 2 pi / roll_off. A patch is cut
     from it, its mean plane taken off (as every specimen's is before it is used) and its heights
     scaled, so `rms` means the same before and after levelling.
+
+    With an anisotropy a, q^2 is q_x^2 / a + q_y^2 a. With an intermittency, the noise is first
+    multiplied by the exponential of a second, Gaussian field, whose variance grows by that number
+    for each factor e of wavelength from the spacing to the grid's side. The noise stays white, so
+    that the spectrum stays the same in the mean, but some places are rougher than others.
 
     Parameters
     ----------
@@ -47,6 +56,12 @@ def self_affine(
     roll_off : float, optional
         Wavelength above which the spectrum is flat, mm. Without it the surface is self-affine at
         every scale of the patch.
+    anisotropy : float, optional
+        Distance along y over the distance along x within which heights differ as much. The rms
+        slope along x is that along y times its H-th power.
+    intermittency : float, optional
+        0 for a Gaussian surface, up to `core.limits.MOST_INTERMITTENT`. Slopes then have heavy
+        tails, the heavier the shorter the distance they are taken over.
 
     Returns
     -------
@@ -61,14 +76,36 @@ def self_affine(
     Notes
     -----
     Spectral synthesis: Saupe in Peitgen & Saupe (1988), The Science of Fractal Images; spectrum
-    with a roll-off: Persson et al., J. Phys. Condens. Matter 17 (2005) R1.
+    with a roll-off: Persson et al., J. Phys. Condens. Matter 17 (2005) R1; intermittency: lambda^2
+    of Bacry, Delour & Muzy, Phys. Rev. E 64 (2001) 026103.
     """
     check_surface(shape, hurst, spacing, rms)
     if roll_off is not None and roll_off <= 0:
         raise ValueError(f"roll_off must be positive, not {roll_off}")
+    if anisotropy <= 0:
+        raise ValueError(f"the anisotropy must be positive, not {anisotropy}")
+    if not 0 <= intermittency <= MOST_INTERMITTENT:
+        raise ValueError(
+            f"the intermittency must lie between 0 and {MOST_INTERMITTENT}, not {intermittency}"
+        )
 
-    density = _power_spectral_density(grid_side(shape), spacing, hurst, roll_off)
-    return levelled(filtered_noise(density, shape, seed), rms)
+    side = grid_side(shape)
+    density = _power_spectral_density(side, spacing, hurst, roll_off, anisotropy)
+    local = _local_roughness(side, intermittency, seed) if intermittency else None
+    return levelled(filtered_noise(density, shape, seed, local), rms)
+
+
+def _local_roughness(side: int, intermittency: float, seed: int) -> np.ndarray:
+    """Factors (side, side) of white noise, above 0, that make some places rougher than others.
+
+    The exponential of Gaussian noise, independent of that of :func:`filtered_noise`, of the power
+    spectral density 2 pi lambda^2 / q^2, lambda^2 being the intermittency.
+    """
+    # In nodes: a spectrum of this power has no length of its own.
+    density = 2 * np.pi * intermittency / _wave_numbers(side, 1.0) ** 2
+    independent = np.random.PCG64(seed).jumped()
+    noise = np.random.Generator(independent).standard_normal((side, side))
+    return np.exp(_filtered(noise, density))
 
 
 def band_limited(
@@ -158,26 +195,39 @@ def grid_side(shape: tuple[int, int]) -> int:
     return int(scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True))
 
 
-def filtered_noise(density: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
+def filtered_noise(
+    density: np.ndarray, shape: tuple[int, int], seed: int, local: np.ndarray | None = None
+) -> np.ndarray:
     """Gaussian patch in mm: white noise of variance one whose spectrum is multiplied by a density.
 
     ``density`` (side, side // 2 + 1) is the power spectral density over the area of a cell, mm2, on
     the half plane of `scipy.fft.rfft2` of the periodic grid of :func:`grid_side` nodes. The same
-    seed gives the same bits.
+    seed gives the same bits. The noise is multiplied by ``local`` (side, side) first, where it is
+    given: the patch then is not Gaussian.
     """
     side = len(density)
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
+    if local is not None:
+        noise *= local
+    return _filtered(noise, density)[: shape[0], : shape[1]]
+
+
+def _filtered(noise: np.ndarray, density: np.ndarray) -> np.ndarray:
+    """Noise (side, side) whose spectrum is multiplied by a density of its half plane."""
     # One worker: the result must not depend on how many cores there are.
     spectrum = scipy.fft.rfft2(noise, workers=1)
     spectrum *= np.sqrt(density)
-    surface = scipy.fft.irfft2(spectrum, s=(side, side), workers=1)
-    return surface[: shape[0], : shape[1]]
+    return scipy.fft.irfft2(spectrum, s=noise.shape, workers=1)
 
 
-def _wave_numbers(side: int, spacing: float) -> np.ndarray:
-    """Wave numbers q on the half plane of `scipy.fft.rfft2`, 1/mm; infinite for the mean height."""
-    qy = 2 * np.pi * scipy.fft.fftfreq(side, spacing)[:, np.newaxis]
-    qx = 2 * np.pi * scipy.fft.rfftfreq(side, spacing)[np.newaxis, :]
+def _wave_numbers(side: int, spacing: float, anisotropy: float = 1.0) -> np.ndarray:
+    """Wave numbers q on the half plane of `scipy.fft.rfft2`, 1/mm; infinite for the mean height.
+
+    With an anisotropy those of the isotropic surface that is stretched along y.
+    """
+    stretch = np.sqrt(anisotropy)
+    qy = 2 * np.pi * scipy.fft.fftfreq(side, spacing)[:, np.newaxis] * stretch
+    qx = 2 * np.pi * scipy.fft.rfftfreq(side, spacing)[np.newaxis, :] / stretch
     q = np.hypot(qy, qx)
     q[0, 0] = np.inf
     return q
@@ -194,10 +244,10 @@ def _band(
 
 
 def _power_spectral_density(
-    side: int, spacing: float, hurst: float, roll_off: float | None
+    side: int, spacing: float, hurst: float, roll_off: float | None, anisotropy: float
 ) -> np.ndarray:
     """C(q) up to a factor, on the half plane of `scipy.fft.rfft2`; zero for the mean height."""
-    q = _wave_numbers(side, spacing)
+    q = _wave_numbers(side, spacing, anisotropy)
     # In units of the roll-off (or of the longest wave), so that no power under- or overflows.
     q /= 2 * np.pi / (roll_off if roll_off is not None else side * spacing)
     floor = 1.0 if roll_off is not None else 0.0

@@ -8,7 +8,8 @@ first iterations of a load step the set is predicted: nodes that a step would ta
 left out, and the step is computed again on the others, before K is applied at all. Directions and
 their images are in single precision; the returned state is verified on a displacement in double
 precision. (Primal-dual active sets, a semismooth Newton method: M. Hintermueller, K. Ito and K.
-Kunisch, SIAM J. Optim. 13 (2002) 865. docs/solver.md has the whole solver on one page.)
+Kunisch, SIAM J. Optim. 13 (2002) 865. The whole solver on one page:
+packages/roughcontact/docs/solver.md.)
 """
 
 from dataclasses import dataclass

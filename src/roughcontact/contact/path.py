@@ -49,7 +49,7 @@ class BranchState:
         Nodes that have carried the hardness.
     contact : ContactState
         On the heights at the beginning of the branch, permanent set included; its own closure is
-        from first touch of these.
+        from first touch of these. Its ``stiffness`` is that of the branch.
     hardness : float or (ny, nx) ndarray
         MPa.
     """
@@ -90,7 +90,10 @@ class BranchState:
 
     @property
     def plastic_load_fraction(self) -> float:
-        """Fraction of the force on nodes at the hardness; 0 without a force."""
+        """Fraction of the force on nodes at the hardness.
+
+        It is 0 without a force, and on the branches ``unload`` and ``reload``, which are elastic.
+        """
         at_limit = self.contact.pressure >= self.contact.hardness
         total = float(self.pressure.sum())
         return float(self.pressure[at_limit].sum()) / total if total > 0 else 0.0
@@ -131,11 +134,15 @@ def load_path(
     *,
     forces: Sequence[float] | None = None,
     closures: Sequence[float] | None = None,
-    hardness: float | ArrayLike | None,
+    mean_pressures: Sequence[float] | None = None,
+    hardness: float | ArrayLike | None = None,
     rtol: float = 1e-6,
     loaded: ContactState | None = None,
 ) -> list[BranchState]:
     """States of contact under successive loads: up, down and up again.
+
+    Below the largest load so far a branch is elastic and its pressures have no limit. Back at that
+    load they equal the hardness again, to within the error of the solve.
 
     Parameters
     ----------
@@ -143,11 +150,13 @@ def load_path(
         Composite topography h before any load, mm, as for `solve_contact`.
     space : HalfSpace
     forces : (k,) sequence of float, optional
-        F, N. Either these or ``closures`` are given.
+        F, N. One of ``forces``, ``closures`` and ``mean_pressures`` is given.
     closures : (k,) sequence of float, optional
         w, mm, all from first touch of ``composite``. The force is 0 where contact is lost.
-    hardness : float or (ny, nx) array_like
-        H, MPa, as for `solve_contact`; None for an elastic surface.
+    mean_pressures : (k,) sequence of float, optional
+        F over the area of the window, MPa.
+    hardness : float or (ny, nx) array_like, optional
+        H, MPa, as for `solve_contact`.
     rtol : float
         As for `solve_contact`.
     loaded : ContactState, optional
@@ -178,20 +187,24 @@ def load_path(
     >>> bool(path[-1].permanent_set.max() > 0)
     True
     """
-    given, name = (forces, "forces") if closures is None else (closures, "closures")
-    if given is None or (given is closures and forces is not None):
-        raise ValueError("give either forces= or closures=")
-    loads = real_array(given, name)
+    choices = {"forces": forces, "closures": closures, "mean_pressures": mean_pressures}
+    given = {name: values for name, values in choices.items() if values is not None}
+    if len(given) != 1:
+        raise ValueError("give exactly one of forces=, closures= and mean_pressures=")
+    ((name, values),) = given.items()
+    loads = real_array(values, name)
     if loads.ndim != 1 or not (np.isfinite(loads) & (loads >= 0)).all():
         raise ValueError(f"{name}: expected a list of finite numbers >= 0")
+    if mean_pressures is not None:
+        loads = loads * space.area
     height = field(heights_of(composite), "composite topography", space.shape)
     limit = np.inf if hardness is None else hardness
     path = _Path(height, space, limit, rtol)
     if loaded is not None:
         if loaded.space != space:
             raise ValueError("loaded: expected a state of this half-space")
-        path.begin(loaded, loaded.closure if forces is None else loaded.force)
-    return [path.next(float(load), by_force=forces is not None) for load in loads]
+        path.begin(loaded, loaded.force if closures is None else loaded.closure)
+    return [path.next(float(load), by_force=closures is None) for load in loads]
 
 
 class _Path:

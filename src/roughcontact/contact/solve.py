@@ -2,8 +2,9 @@
 
 A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
 if the force is given, the sum of p is fixed and w is free. With a hardness H the pressure is
-limited to H, and nodes there may be pressed in. `active_set` and docs/solver.md describe how such a
-state is found. Here loads become dimensionless, starts are chosen, and results are verified.
+limited to H, and nodes there may be pressed in. `active_set` and the page
+packages/roughcontact/docs/solver.md describe how such a state is found. Here loads become
+dimensionless, starts are chosen, and results are verified.
 """
 
 import math
@@ -127,7 +128,7 @@ def solve_contact(
 def _force_of(mean_pressure, space, closure, force):
     """Force of a mean pressure on the window, N."""
     if closure is not None or force is not None:
-        raise ValueError("give one of closure=, force= and mean_pressure=")
+        raise ValueError("give exactly one of closure=, force= and mean_pressure=")
     _check_space(space)
     pressure = number(mean_pressure, "mean pressure", "MPa")
     if not math.isfinite(pressure) or pressure < 0:
@@ -222,7 +223,7 @@ def _checked(composite, space, closure, force, start, rtol):
     _check_space(space)
     topography = Topography(composite, space.shape)
     if (closure is None) == (force is None):
-        raise ValueError("give either closure= or force= (solve_contact: or mean_pressure=)")
+        raise ValueError("give exactly one of closure=, force= and mean_pressure=")
     name, unit = ("closure", "mm") if force is None else ("force", "N")
     load = number(closure if force is None else force, name, unit)
     if not math.isfinite(load) or load < 0:

@@ -156,14 +156,14 @@ class ContactState:
     def slope(self) -> Slope:
         """Slope dF/dw of the branch, with its error and, if it has no value, the reason.
 
+        For an elastic state it is exact, from K q = 1 on the contact domain; infinite in full
+        contact of a periodic or mirrored window. Where nodes yield it is the secant of the loading
+        branch (`slope.secant_slope`), from two more solves.
+
         Raises
         ------
         NotConverged
-            If it is not determined to :data:`STIFFNESS_ERROR`, or as `solve_contact`.
-
-        Notes ----- For an elastic state it is exact, from K q = 1 on the contact domain; infinite
-        in full contact of a periodic or mirrored window. Where nodes yield it is the secant of the
-        loading branch (`slope.secant_slope`), from two more solves.
+            If its relative error may exceed 1e-6, or as `solve_contact`.
         """
         if self._yields():
             return secant_slope(self, self._solver)

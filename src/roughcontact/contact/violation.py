@@ -22,7 +22,14 @@ def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
     violation, rounding : float
         Relative to the closure: distance of gaps and pressures from a state of contact, and the
         part of it that the rounding of the heights explains.
+
+    Raises
+    ------
+    ValueError
+        If the window is not free or has another kernel.
     """
+    if not state.space.is_free or state.space.kernel != "love":
+        raise ValueError("violation: expected a state of a free window with Love's kernel")
     (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
     y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx
     kernel = love_displacement(x, y, dx, dy) / state.space.modulus

@@ -87,9 +87,9 @@ class HalfSpace:
         Contact modulus E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
     kernel : str
         ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
-        the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
-        ``"inscribed disc"``: that self-term, and a point load on every other cell (free windows
-        only).
+        the readings of the rigid plate of Borri-Brunetto et al. (1999), ``"rigid square"``,
+        ``"equal-area disc"``, ``"inscribed disc"``: that self-term, and a point load on every other
+        cell (free windows only).
     boundary : str
         ``"free"`` (default): the window stands alone on the half-space. ``"periodic"``: it repeats
         beyond its edges. ``"mirrored"``: it is reflected there, half a cell beyond its outermost

@@ -7,12 +7,14 @@ from code_blocks import run_code
 
 @pytest.fixture(scope="module")
 def problem():
-    return run_code("docs/other_codes.md", "The problem")
+    return run_code("packages/roughcontact/docs/other_codes.md", "The problem")
 
 
 @pytest.fixture(scope="module")
 def ours(problem):
-    return run_code("docs/other_codes.md", "By roughcontact", **given(problem))
+    return run_code(
+        "packages/roughcontact/docs/other_codes.md", "By roughcontact", **given(problem)
+    )
 
 
 def given(problem):
@@ -33,20 +35,33 @@ def test_ours_carries_the_mean_pressure_on_a_part_of_the_window(problem, ours):
 
 def test_tamaas_gives_the_same_pressures(problem, ours):
     pytest.importorskip("tamaas")
-    check(run_code("docs/other_codes.md", "By Tamaas", **given(problem)), ours)
+    check(
+        run_code("packages/roughcontact/docs/other_codes.md", "By Tamaas", **given(problem)), ours
+    )
 
 
 def test_contact_mechanics_gives_the_same_pressures(problem, ours):
     pytest.importorskip("ContactMechanics")
-    check(run_code("docs/other_codes.md", "By ContactMechanics", **given(problem)), ours)
+    check(
+        run_code(
+            "packages/roughcontact/docs/other_codes.md", "By ContactMechanics", **given(problem)
+        ),
+        ours,
+    )
 
 
 def test_aspher_gives_the_same_pressures_in_a_window_alone(problem, ours):
     here = {**given(problem), **given(ours)}
-    alone = run_code("docs/other_codes.md", "By roughcontact, a window that stands alone", **here)
+    alone = run_code(
+        "packages/roughcontact/docs/other_codes.md",
+        "By roughcontact, a window that stands alone",
+        **here,
+    )
     assert alone["pressure"].mean() == pytest.approx(problem["mean_pressure"])
     pytest.importorskip("aspher")
     theirs = run_code(
-        "docs/other_codes.md", "By ASPHER, a window that stands alone", **given(problem)
+        "packages/roughcontact/docs/other_codes.md",
+        "By ASPHER, a window that stands alone",
+        **given(problem),
     )
     check(theirs, alone)

@@ -229,8 +229,8 @@ def test_hardness_of_each_node_presses_in_the_soft_ones_alone():
 @pytest.mark.parametrize(
     ("loads", "message"),
     [
-        ({}, "either forces= or closures="),
-        ({"forces": [1.0], "closures": [1.0]}, "either forces= or closures="),
+        ({}, "exactly one of forces="),
+        ({"forces": [1.0], "closures": [1.0]}, "exactly one of forces="),
         ({"forces": [1.0, -1.0]}, "forces: expected"),
         ({"forces": [[1.0]]}, "forces: expected"),
         ({"closures": [np.nan]}, "closures: expected"),
@@ -255,3 +255,15 @@ def test_a_path_goes_on_from_a_state_that_is_solved():
         assert other.dissipated_energy == pytest.approx(one.dissipated_energy, rel=1e-6)
     with pytest.raises(ValueError, match="loaded: expected"):
         load_path(height, HalfSpace(space.shape, 0.1, E_STAR), forces=loads, **going)
+
+
+def test_a_path_of_mean_pressures_is_that_of_their_forces():
+    height, space, area = rough(3)
+    pressures = [2.0, 0.5, 1.0]
+    by_pressure = load_path(height, space, mean_pressures=pressures, hardness=800)
+    by_force = load_path(height, space, forces=[p * area for p in pressures], hardness=800)
+    for one, other in zip(by_pressure, by_force, strict=True):
+        assert one.branch == other.branch
+        assert np.array_equal(one.pressure, other.pressure)
+    with pytest.raises(ValueError, match="exactly one of forces=, closures= and mean_pressures="):
+        load_path(height, space, mean_pressures=pressures, forces=pressures)

@@ -13,6 +13,7 @@ from repeated_windows import dense_operator, displacement, reflected, violation
 from rough_surfaces import self_affine
 
 from roughcontact import HalfSpace, NotConverged, load_path, solve_contact
+from roughcontact.contact.violation import violation as violation_of_free_windows
 
 BOUNDARIES = ["periodic", "mirrored"]
 SPACING, MODULUS = 0.1, 20e3
@@ -302,3 +303,12 @@ def test_random_scenes_meet_the_conditions(seed, boundary):
     expected = displacement(state.pressure, space)
     scale = np.abs(expected).max() + state.pressure.max() * space.cell / space.modulus
     np.testing.assert_allclose(state.displacement, expected, rtol=0, atol=1e-11 * scale)
+
+
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_the_judge_of_free_windows_refuses_others(boundary):
+    height, space, area = rough(boundary)
+    state = solve_contact(height, space, mean_pressure=1.0)
+    assert state.force == pytest.approx(area)
+    with pytest.raises(ValueError, match="expected a state of a free window"):
+        violation_of_free_windows(state, height)

@@ -450,8 +450,8 @@ def test_missing_cells_are_refused_and_counted(hole):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "either closure= or force="),
-        ({"closure": 1.0, "force": 1.0}, "either closure= or force="),
+        ({}, "exactly one of closure=, force="),
+        ({"closure": 1.0, "force": 1.0}, "exactly one of closure=, force="),
         ({"closure": -1.0}, "closure -1.0"),
         ({"force": -1.0}, "force -1.0"),
         ({"force": np.nan}, "force nan"),

@@ -158,4 +158,12 @@ def _words(subject: Subject, strength: xr.Dataset, shown: xr.Dataset) -> dict[st
         "roughness": kit.roughness_words(strength),
         "law": bool(np.isfinite(strength["peak_over_barton"]).any()),
         "ratios": strength["peak_over_barton"].values[valid].tolist(),
+        "sides": _sides_of_barton(strength.isel(normal_force=valid.values)),
     }
+
+
+def _sides_of_barton(strength: xr.Dataset) -> list[str]:
+    """Sides of Barton's law on which peak strengths lie beyond both intervals, load by load."""
+    peak, barton = (Estimate.read(strength, f"{of}_strength") for of in ("peak", "barton"))
+    sides = np.where(peak.low > barton.high, "above", "not distinguishable from")
+    return np.where(peak.high < barton.low, "below", sides).tolist()

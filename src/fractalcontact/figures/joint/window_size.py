@@ -9,12 +9,12 @@ from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
-from ...core.text import pressure_label
+from ...core.text import number, pressure_label
 from .. import kit
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
-NEEDS = ("closure", "windows", "statements")
+NEEDS = ("closure", "windows", "surface_dimension", "statements")
 ORDER = 90
 JOINT_STUDY = True
 
@@ -44,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     titles = ("roughness", f"closure, {where}", f"compliance, {where}")
     a, b, c = kit.panels_of(places, titles)
     _draw_roughness(a, shown, slides=subject.direction != "none")
-    handles = [kit.heading("(a) exponents with 95 % intervals"), *a.entries]
+    handles = [kit.heading("(a) sub-windows of this window"), *a.entries]
     for panel in (b, c):
         _draw_contact(panel, shown)
         handles += [kit.heading(_CONTACT[panel.which][-1]), *panel.entries]
@@ -55,7 +55,9 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     legend.legend(handles=[*handles, kit.heading(kit.BARS)], loc="center left", labelspacing=0.4)
     kit.headline(figure, subject.label)
     return kit.Drawing(
-        figure, kit.table_of(a, b, c), kit.caption(__name__, **_words(atlas, name, laws))
+        figure,
+        kit.table_of(a, b, c),
+        kit.caption(__name__, **_words(atlas, name, laws, subject["surface_dimension"])),
     )
 
 
@@ -67,7 +69,8 @@ def _draw_roughness(panel: kit.Panel, laws: xr.Dataset, *, slides: bool) -> None
     if slides:
         drawn["sigma_z_all"] = ("gap of both faces: $H$", "hurst", "0.65", "D")
     for name, (words, law, colour, marker) in drawn.items():
-        exponent = Estimate.read(laws, law, scale=EXPONENT).text()
+        # The line through nested sizes of one face has no interval of its own.
+        exponent = number(float(laws[law]))
         style: dict[str, Any] = {"color": colour, "marker": marker}
         style |= {"ls": "none", "label": f"{words} = {exponent}"}
         style |= {"filled": "face_sigma_z_fitted", "keep": ("scale_n", "scale_used")}
@@ -104,13 +107,15 @@ def _draw_contact(panel: kit.Panel, laws: xr.Dataset) -> None:
     axes.set_ylabel(label)
 
 
-def _words(atlas: DataTree, name: str, laws: xr.Dataset) -> dict[str, Any]:
-    """Values of the caption: H, that of eq. 2, the claim on larger samples."""
+def _words(atlas: DataTree, name: str, laws: xr.Dataset, surface: xr.Dataset) -> dict[str, Any]:
+    """Values of the caption: H of sigma_z, that of eq. 2, the claim on larger samples."""
+    of_windows = surface.sel(estimator=str(surface["recommended"].item()))
+    hurst = Estimate.read(of_windows, "hurst", scale=EXPONENT)
     force = float(atlas[f"statements/{name}"].attrs["force"])
     judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
     fitted = laws["compliance_exponent"].notnull().any()
     return {
-        "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
+        "hurst": hurst if laws["face_hurst"].notnull() else Estimate(),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
         "claim": kit.claim(
             atlas, name, _CLAIM, why=f"at {pressure_label(float(judged))}" if fitted else ""

@@ -64,10 +64,9 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         reason=str(counts["reason"].item()),
         law=law,
         sides=[float(counts[f"fit_{end}"]) for end in ("min", "max")],
-        one_power=kit.verdict_words(atlas, name, "boxes_follow_one_law", numbers=False),
+        one_power=kit.verdict_words(atlas, name, "domains_are_fractal", numbers=False),
         ordinary=ordinary,
-        one_law=kit.claim(atlas, name, "boxes_follow_one_law"),
-        fractal=kit.claim(atlas, name, "domains_are_fractal", numbers=False),
+        fractal=kit.claim(atlas, name, "domains_are_fractal"),
     )
     return kit.Drawing(figure, kit.table_of(b, c), text)
 

@@ -48,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         drawn=drawn,
         beyond=beyond,
         roughness=kit.roughness_words(strength),
-        claim=kit.claim(atlas, name, "strength_falls_with_size"),
+        claim=kit.claim(atlas, name, "friction_angle_falls_with_size"),
     )
     table = kit.rows(laws.transpose("share", "normal_force", "part", ...), *_COLUMNS)
     return kit.Drawing(figure, table, words)

@@ -5,15 +5,14 @@ import pytest
 from tiny_pairs import loading_of, pair
 
 from fractalcontact.core.intervals import t_quantile
-from fractalcontact.registration.registration_scatter import motion_variables
-from fractalcontact.registration.surface_motion import Motion
-from fractalcontact.states.registration_spread import (
-    SPREAD_QUANTITIES,
+from fractalcontact.error_budget.two_scans import (
     moved_specimen,
     registration_spread,
     registration_values,
 )
-from fractalcontact.states.subgrid import closure_from
+from fractalcontact.registration.registration_scatter import motion_variables
+from fractalcontact.registration.surface_motion import Motion
+from fractalcontact.states.state_quantities import STATE_QUANTITIES
 
 MIDDLE = (12.0, 12.0)
 
@@ -33,7 +32,7 @@ def spread_of(joint):
 
 def test_registrations_that_are_none_have_no_spread():
     spread = spread_of(loading([Motion(MIDDLE, MIDDLE)] * 3))
-    assert spread.keys() == set(SPREAD_QUANTITIES)
+    assert spread.keys() == {*STATE_QUANTITIES, "seated_closure"}
     assert all((of < 1e-9).all() for of in spread.values())
     assert spread_of(loading([])) is None
 
@@ -57,7 +56,7 @@ def test_the_spread_is_that_of_the_values_and_grows_with_the_motions():
     values = registration_values(loading(far))
     spread = spread_of(loading(far))
     values["seated_closure"] = values["closure"] - values["closure"][:, :1]
-    for name in SPREAD_QUANTITIES:
+    for name in (*STATE_QUANTITIES, "seated_closure"):
         assert values[name].shape == (3, 2)
         half = t_quantile(2) * values[name].std(axis=0, ddof=1)
         np.testing.assert_allclose(spread[name], half)
@@ -81,11 +80,3 @@ def test_loads_can_be_chosen():
     whole_ladder = registration_values(whole)
     for name, of in whole_ladder.items():
         assert one[name][:, 0] == pytest.approx(of[:, 1], rel=1e-2)
-
-
-def test_closure_counts_from_the_seat_that_is_given():
-    forces, closure = np.array([1.0, 2.0, 4.0]), np.array([[0.1, 0.3, 0.6], [0.2, 0.2, 0.9]])
-    np.testing.assert_allclose(closure_from(closure, forces, 2.0)[:, 1:], [[0, 0.3], [0, 0.7]])
-    assert np.isnan(closure_from(closure, forces, 2.0)[:, 0]).all()
-    for no_seat in (np.nan, 3.0):
-        assert np.isnan(closure_from(closure, forces, no_seat)).all()

@@ -10,7 +10,7 @@ import xarray as xr
 from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.datasets import labelled_dataset
-from .loading import JointLoading
+from ..states.loading import JointLoading
 
 #: Most nodes along a side of the grid, whose influence matrix is written out.
 MAX_SIDE = 24

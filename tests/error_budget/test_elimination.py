@@ -9,7 +9,7 @@ import xarray as xr
 from rough_surfaces import self_affine
 
 from contactlab.accuracy.elimination import counter_example
-from fractalcontact.states.elimination import _eliminated, elimination_alone
+from fractalcontact.error_budget.elimination import _eliminated, elimination_alone
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 

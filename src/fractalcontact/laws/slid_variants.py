@@ -12,12 +12,12 @@ import numpy as np
 from ..core.labels import cf_attrs
 from ..core.window import window_slices
 from ..joint.joint import prefractal
-from ..laws.strength import OWN, QUARTER, READ, WINDOW
 from ..scan.other_readings import other_readings
 from ..states.loading import JointLoading
+from ..states.other_windows import MIN_EFFECTIVE, whole_composite, window_places
 from ..states.settlement import window_settlement
 from ..states.sweep import load_steps
-from .other_windows import MIN_EFFECTIVE, whole_composite, window_places
+from .strength import OWN, QUARTER, READ, WINDOW
 
 #: Most nodes along a side of the grids that variants are solved on: their differences count.
 MAX_SIDE = 96

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tiny_pairs import loading_of, pair
 
+from fractalcontact.error_budget.two_scans import reading_values, scan_spread, wider_spread
 from fractalcontact.scan.other_readings import (
     MARKS,
     OTHER_FACES,
@@ -11,8 +12,7 @@ from fractalcontact.scan.other_readings import (
     READING,
     other_readings,
 )
-from fractalcontact.states.scan_spread import reading_values, scan_spread, wider_spread
-from fractalcontact.states.subgrid import SOUND, STATE_QUANTITIES
+from fractalcontact.states.state_quantities import SOUND, STATE_QUANTITIES
 from fractalcontact.surface.synthesis import self_affine
 
 

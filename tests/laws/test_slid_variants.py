@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from made_stages import scan
 
-from fractalcontact.error_budget.slid_variants import OWN, QUARTER, READ, WINDOW, slid_variants
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
+from fractalcontact.laws.slid_variants import OWN, QUARTER, READ, WINDOW, slid_variants
 from fractalcontact.scan.other_readings import OTHER_FACES, READING
 from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.states import combine

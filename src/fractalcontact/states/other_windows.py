@@ -6,7 +6,7 @@ import xarray as xr
 from ..core.intervals import t_quantile
 from ..core.window import faces, window_slices
 from ..joint.joint import DIRECTION_STEPS
-from ..states.loading import JointLoading
+from .loading import JointLoading
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
 MAX_WINDOWS, MAX_OVERLAP = 5, 0.5
