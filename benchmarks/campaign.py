@@ -6,8 +6,8 @@ python benchmarks/campaign.py 1000 --measure  measures dry run, rerun without wo
 
 Everything goes to results/campaigns/N: `scans/GROUP/twin_00001.npy`, a sidecar for each group,
 `study.yaml`. To measure what only depends on how many specimens there are, each gets copies of the
-results of one of the six under its own name (links to the same file, but for its atlas, in which
-the names of groups are changed): their numbers are those of six twins, and say nothing.
+results of one of the six under its own name (links to the same file, but for its atlas, which
+gets its name): their numbers are those of six twins, and say nothing.
 """
 
 import argparse
@@ -24,6 +24,7 @@ import time
 from functools import cache
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import yaml
 
@@ -193,9 +194,7 @@ def _one_more(folder, n):
 
 
 def _copy(origin, results, donor, name):
-    """Give a specimen the files of another: links, but for the atlas, whose groups are renamed."""
-    import h5py
-
+    """Give a specimen the files of another: links, but for the atlas, which gets its name."""
     paths = [*origin.glob(f"*/{donor}.*"), *origin.glob(f"contact/{donor}/*")]
     for path in paths:
         target = results / str(path.relative_to(origin)).replace(donor, name)
@@ -204,10 +203,9 @@ def _copy(origin, results, donor, name):
         target.parent.mkdir(parents=True, exist_ok=True)
         if path.parent.name == "atlas":
             shutil.copyfile(path, target)
-            with h5py.File(target, "a") as file:
-                for stage in file.values():
-                    if donor in stage and donor != name:
-                        stage.move(donor, name)
+            _rename(target, donor, name)
+            # It is as old as what was made of it, so that no card is made again.
+            os.utime(target, ns=(path.stat().st_atime_ns, path.stat().st_mtime_ns))
             record = results / f"checksums/atlas/{name}.sha256"
             record.parent.mkdir(parents=True, exist_ok=True)
             record.write_text(f"{checksums.sha256(target)}  atlas/{name}.nc\n", encoding="utf-8")
@@ -223,6 +221,16 @@ def _copy(origin, results, donor, name):
             target.write_text(
                 path.read_text(encoding="utf-8").replace(donor, name), encoding="utf-8"
             )
+
+
+def _rename(atlas, donor, name):
+    """Name the specimen of an atlas anew: its settings, the digests of its scan, its groups."""
+    with netCDF4.Dataset(atlas, "a") as file:
+        for attribute in ("configuration", "scan_checksums"):
+            file.setncattr(attribute, file.getncattr(attribute).replace(donor, name))
+        for stage in file.groups.values():
+            if donor in stage.groups and donor != name:
+                stage.renameGroup(donor, name)
 
 
 def _copy_records(origin, folder, donor, name, study):

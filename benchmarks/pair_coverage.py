@@ -34,6 +34,7 @@ from fractalcontact.joint.joint import describe_joint
 from fractalcontact.joint.jrc import profile_roughness
 from fractalcontact.joint.openings import prefractal_openings
 from fractalcontact.laws.closure import closure_curves
+from fractalcontact.laws.reference_states import reference_stiffness
 from fractalcontact.laws.seated_laws import at_reference_pressures
 from fractalcontact.report.published import read, row_of
 from fractalcontact.stages.closure_and_box_counts import reported_budget
@@ -43,7 +44,13 @@ from fractalcontact.states.other_windows import whole_composite, window_places
 from fractalcontact.states.seat import closure_from
 from fractalcontact.states.state_quantities import SOUND, composite_quantities
 from fractalcontact.states.state_scalars import aperture
-from fractalcontact.states.states import combine, contact_domains, forces_of, with_pressure
+from fractalcontact.states.states import (
+    combine,
+    contact_domains,
+    forces_of,
+    map_states,
+    with_pressure,
+)
 from fractalcontact.states.sweep import joint_states, load_steps
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
@@ -147,6 +154,8 @@ def study_of(
     curves.update(reported.variables())
     stages = {"closure": curves, "domains": analyse_domains(contact_domains(states), SPACING)}
     stages = {name: with_pressure(stage, loading.area) for name, stage in stages.items()}
+    stated = reference_stiffness(loading.at_map_offset(), stages["closure"], map_states([parts]))
+    stages["closure"] = stages["closure"].assign(stated)
     budget = reported_budget(loading, stages, reported)
     roughness = profile_roughness(specimen, "E").expand_dims(contact_direction=["E"])
     stages |= {"specimens": specimen, "error_budget": budget, "strength": roughness}

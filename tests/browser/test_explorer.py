@@ -194,11 +194,15 @@ def test_errors_and_the_word_undetermined_are_those_of_the_result_page(open_page
                         if words in ("–", state["interface_stiffness_reason"].item()):
                             continue
                         decided = by_own or (quantity == "closure" and at_touch)
-                        assert words.startswith("undetermined (") == decided, (name, key, words)
-                        assert words.endswith("), by the scan") == decided
-                        by_scan += decided
                         at_maps = offset == budget.attrs["offset_mm"]
                         total = float(budget["total"].sel(quantity=quantity, normal_force=force))
+                        # A stiffness that its error outweighs by half is undetermined, too.
+                        is_wide = at_maps and quantity == "stiffness"
+                        is_wide &= total > 0.5 * float(state["interface_stiffness"])
+                        is_open = words.startswith("undetermined (")
+                        assert is_open == (decided or is_wide), (name, key, words)
+                        assert words.endswith("), by the scan") == decided
+                        by_scan += decided
                         if at_maps and np.isfinite(total):
                             shown = number_in(words.split(" ± ")[1])
                             assert shown == pytest.approx(total, rel=0.051)

@@ -16,7 +16,7 @@ from fractalcontact.cards import page
 from fractalcontact.cards.card import _by_source, geometry_of, is_synthetic
 from fractalcontact.cards.entries import entries, entry_of, number, row_at
 from fractalcontact.cards.methods import _contact, _laws, scan_words
-from fractalcontact.cards.page import page_of
+from fractalcontact.cards.page import page_of, permeability_words
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
@@ -105,7 +105,7 @@ def test_a_fit_has_its_range_and_says_whether_it_determines_its_number(cards, su
             found = card["entries"][key]
             assert found["range"]["low"] == pytest.approx(float(closure["seating_pressure"]))
             if "value" in found:
-                says = bool(closure["seated_k_ni_determined"])
+                says = bool(subjects[name]["error_budget"]["k_ni_determined"])
                 assert found["determined"] <= says
                 assert says or found["note"]
 
@@ -163,7 +163,7 @@ def test_a_card_is_as_trusted_as_its_worst_light(cards):
         assert card["trust"]["word"] == words[worst]
         deciding = {light["key"]: light for light in card["lights"] if light["word"] == worst}
         cause = next(key for key in ("faces", "scan", "model", "nodes", "grid") if key in deciding)
-        _, _, advice = card["trust"]["help"].rpartition("times the strength); ")
+        _, _, advice = card["trust"]["help"].rpartition("times the strength by Barton's law); ")
         assert advice == deciding[cause]["help"]
         assert card["trust"]["reason"].startswith(deciding[cause]["title"])
 
@@ -308,6 +308,25 @@ def test_errors_that_are_rounding_are_zero_and_unknown_ones_are_left_out():
     found = _by_source(xr.Dataset({"error": errors}), "gap", 2.0)
     assert found == {"solver": 0.0, "numerical": 0.5}
     assert _by_source(xr.Dataset({"error": errors}), "other", 2.0) == {}
+
+
+def test_the_permeability_has_its_range_and_says_what_is_undetermined():
+    def curve(value, determined):
+        ends = {"low": 0.9 * value, "high": 1.1 * value, "determined": determined}
+        branches = ("load", "unload", "reload")
+        values = [{"at": {"branch": branch}, "value": value} | ends for branch in branches]
+        values[2] = {"at": {"branch": "reload"}, "missing": "a free window"}
+        return {"range": {"low": 1.0, "high": 10.0, "unit": "MPa"}, "values": values}
+
+    entries = {
+        "permeability_k_0": curve(2e-4, True),
+        "permeability_alpha": curve(0.04, False),
+    }
+    words = permeability_words(entries)
+    assert "from 1 to 10 MPa" in words
+    assert "on loading k_0 = 0.0002 [0.000180, 0.000220], alpha = undetermined" in words
+    assert "reloading" not in words
+    assert permeability_words({}) == ""
 
 
 def test_methods_name_the_laws_that_were_fitted():

@@ -7,6 +7,7 @@ import xarray as xr
 import yaml
 
 from fractalcontact.commands.gap_of_scans import main
+from fractalcontact.scan import read as scan_read
 from fractalcontact.surface.synthesis import self_affine
 
 STATED = {
@@ -53,6 +54,18 @@ def test_the_map_is_the_opening_at_its_places(pair, tmp_path, capsys):
     table = pd.read_csv(tmp_path / "gap.csv")
     by_place = table.sort_values(["y_mm", "x_mm"])["aperture_mm"].to_numpy().reshape(30, 40)
     np.testing.assert_allclose(by_place, gap.values, rtol=1e-6)
+
+
+def test_files_that_their_keys_describe_are_read_once(pair, tmp_path, monkeypatch):
+    read, confined = [], scan_read.read_confined
+
+    def counted(path, options):
+        read.append(path.name)
+        return confined(path, options)
+
+    monkeypatch.setattr(scan_read, "read_confined", counted)
+    assert run(pair, tmp_path, "gap.nc") == 0
+    assert sorted(read) == ["lower.npy", "upper.npy"]
 
 
 @pytest.fixture

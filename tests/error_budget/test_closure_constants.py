@@ -16,13 +16,14 @@ def hyperbola(k_ni, v_m=0.4):
     return PRESSURE * v_m / (k_ni * v_m + PRESSURE) * (1 + 1e-4 * np.cos(9 * PRESSURE))
 
 
-def curve_of(k_ni=30.0):
+def curve_of(k_ni=30.0, change=np.nan, reason=""):
     own = seated_constants(PRESSURE, hyperbola(k_ni), np.ones(9, bool), 0.25)
     values = {
         f"seated_{name}{end}": own[name] * size
         for name in own
         for end, size in (("", 1.0), ("_low", 0.99), ("_high", 1.02))
     }
+    values |= {"seated_k_ni_change": change, "seated_k_ni_reason": reason}
     return xr.Dataset(values, {"nominal_pressure": ("normal_force", PRESSURE)})
 
 
@@ -81,3 +82,19 @@ def test_a_constant_that_no_other_reading_has_is_unbounded():
     assert np.isfinite(value)
     assert low == 0
     assert high == np.inf
+
+
+@pytest.mark.parametrize(
+    ("change", "is_determined"), [(np.nan, True), (0.01, True), (0.05, False), (-0.02, False)]
+)
+def test_k_ni_that_another_grid_moves_out_of_its_interval_is_undetermined(change, is_determined):
+    """The fit's interval is -1 to +2 %; without a solve at twice the spacing it decides."""
+    constants = closure_constants(curve_of(change=change), 0.25, None, None)
+    assert constants["k_ni_determined"][1] == is_determined
+    assert ("twice the spacing" in constants["k_ni_reason"][1]) != is_determined
+    # Readings that differ by more hold the change of the grid.
+    readings = values_of(hyperbola(30.0), hyperbola(24.0))
+    assert closure_constants(curve_of(change=change), 0.25, readings, None)["k_ni_determined"][1]
+    told = closure_constants(curve_of(change=change, reason="too few states"), 0.25, None, None)
+    assert told["k_ni_reason"][1] == "too few states"
+    assert not told["k_ni_determined"][1]

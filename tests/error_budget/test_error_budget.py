@@ -91,6 +91,10 @@ def budget_of(name, accuracy=None, **more):
     loading = JointLoading.of_joint(specimen, joint, directions[0], settings, solver)
     sides = tuple(np.array(loading.shape) * SPACING)
     curves = closure_curves(states, sides, settings.material.e_star)
+    # That of a stage, whose states at the reference pressures are solved beside the curves.
+    at = {"reference_pressure": [1.0, 5.0, 10.0]}
+    stated = xr.Dataset({"reference_stiffness": ("reference_pressure", [20.0, 50.0, 80.0])}, at)
+    curves = curves.assign(stated)
     domains = analyse_domains(contact_domains(states), SPACING)
     budget = error_budget(loading.at_map_offset(), curves, domains, **more)
     plan = solve_plan(curves, elastic_dilatancy(curves, joint), solver, budget)

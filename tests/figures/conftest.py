@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 import xarray as xr
-from drawings import draw
+from drawings import draw, keep_drawings
 from made_stages import scan, stages_of
 from made_tests import with_tests
 from materials import ROCK
@@ -157,7 +157,7 @@ def _experiments():
 
 @pytest.fixture(scope="session")
 def atlas(atlas_file):
-    return read_atlas(atlas_file)
+    return keep_drawings(read_atlas(atlas_file))
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from cases import representative
-from drawings import breaches, draw
+from drawings import breaches, draw, keep_drawings
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
@@ -54,7 +54,7 @@ def atlas(atlas):
         scaling = scaling_over_resolutions(curves, subject["domains"], 0.1, left=left)
         scaling = scaling.merge(extrapolated_pressure(scaling, np.sqrt(subject.area)))
         changed[f"scaling/{name}"] = xr.DataTree(with_pressure(scaling, subject.area))
-    return changed
+    return keep_drawings(changed)
 
 
 @pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))

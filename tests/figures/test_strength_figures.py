@@ -47,7 +47,7 @@ def unstated(atlas):
 
 
 def test_short_axes_are_numbered_in_plain_words(atlas):
-    axes = drawn(atlas, "flat", "window_size").figure.axes[0]
+    axes = drawn(atlas.copy(), "flat", "window_size").figure.axes[0]
     axes.set_xlim(0.9, 21)
     plain_decades(axes.xaxis)
     ticks = [t for t in axes.xaxis.get_major_locator()() if 0.9 <= t <= 21]

@@ -62,17 +62,47 @@ def test_a_closed_gap_says_why_nothing_flows():
     assert flow.reason == NO_PATH
 
 
+PRESSURE, K_0, ALPHA = np.array([0.5, 1.0, 5.0, 10.0, 25.0]), 2e-4, 0.04
+EVERY = np.ones(5, bool)
+
+
+def falling(k_0=K_0, alpha=ALPHA):
+    """T of a joint whose permeability falls exponentially with the pressure."""
+    return (12 * k_0 * np.exp(-alpha * PRESSURE)) ** 1.5 / 12
+
+
 def test_a_permeability_that_falls_exponentially_has_its_constants():
-    """k = k_0 exp(-alpha sigma); states without a passage are left out, two give no law."""
-    pressure, k_0, alpha = np.array([0.5, 1.0, 5.0, 10.0, 25.0]), 2e-4, 0.04
-    k = k_0 * np.exp(-alpha * pressure)
-    transmissivity = (12 * k) ** 1.5 / 12
-    transmissivity[1] = 0
-    found = permeability_law(pressure, transmissivity)
-    assert found["permeability_k_0"].value == pytest.approx(k_0)
-    assert found["permeability_alpha"].value == pytest.approx(alpha)
-    assert found["permeability_alpha"].low == pytest.approx(alpha, rel=1e-6)
-    scattered = permeability_law(pressure, transmissivity * np.array([1, 1, 1.2, 0.8, 1.1]))
+    """k = k_0 exp(-alpha sigma) on each branch; two loads give no law."""
+    found = permeability_law(PRESSURE, [falling(), falling(K_0 / 2, ALPHA / 4)], EVERY)
+    np.testing.assert_allclose(found["permeability_k_0"].value, [K_0, K_0 / 2])
+    np.testing.assert_allclose(found["permeability_alpha"].value, [ALPHA, ALPHA / 4])
+    np.testing.assert_allclose(found["permeability_alpha"].low, [ALPHA, ALPHA / 4], rtol=1e-6)
+    scattered = permeability_law(PRESSURE, [falling() * np.array([1, 1, 1.2, 0.8, 1.1])], EVERY)
     alpha_of = scattered["permeability_alpha"]
-    assert alpha_of.low < alpha < alpha_of.high
-    assert not permeability_law(pressure[:3], transmissivity[:3])["permeability_alpha"].known
+    assert alpha_of.low < ALPHA < alpha_of.high
+    too_few = permeability_law(PRESSURE, [falling()], EVERY & (PRESSURE < 2))
+    assert not too_few["permeability_alpha"].known.any()
+    assert np.isnan(too_few["permeability_pressure_low"])
+
+
+def test_all_branches_are_fitted_over_the_loads_that_may_be_and_at_which_water_passes():
+    loaded, reloaded = falling(), falling(K_0 / 2)
+    loaded[0] *= 9
+    loaded[1], reloaded[4] = 0, np.nan
+    may_fit = PRESSURE > 0.7
+    with_more = np.append(PRESSURE, 15.0), np.append(may_fit, True)
+    flows = [np.append(of, 10.0) for of in (loaded, reloaded)]
+    for of, k_0 in zip(flows, (K_0, K_0 / 2), strict=True):
+        of[-1] = (12 * k_0 * np.exp(-ALPHA * 15)) ** 1.5 / 12
+    found = permeability_law(with_more[0], flows, with_more[1])
+    ends = [found[f"permeability_pressure_{end}"] for end in ("low", "high")]
+    assert ends == [5.0, 15.0]
+    np.testing.assert_allclose(found["permeability_k_0"].value, [K_0, K_0 / 2])
+
+
+def test_a_branch_that_is_not_valid_has_no_law_and_keeps_none_of_the_others_from_it():
+    found = permeability_law(PRESSURE, [falling(), np.full(5, np.nan)], EVERY)
+    assert found["permeability_k_0"].known.tolist() == [True, False]
+    assert found["permeability_pressure_high"] == PRESSURE[-1]
+    closed = permeability_law(PRESSURE, [np.zeros(5)], EVERY)
+    assert not closed["permeability_k_0"].known.any()

@@ -142,7 +142,10 @@ def test_an_interval_ends_where_every_angle_is_truncated():
 
 
 def test_peaks_have_the_uncertainty_of_the_basic_friction_angle():
-    """0.9 to 1.9 times if phi_b is assumed, 13 % if it is measured; never beyond 70 degrees."""
+    """Measured: 13 %. Assumed: 0.9 to 1.9 times by Barton's law, 5 degrees by the others.
+
+    No end lies beyond 70 degrees.
+    """
     settings = settings_of(offsets=[0.3, 0.5], map_offset=0.3)
     rock = replace(settings.material, basic_friction_angle=BASIC, joint_wall_strength=50.0)
     widths = {}
@@ -157,11 +160,15 @@ def test_peaks_have_the_uncertainty_of_the_basic_friction_angle():
         assert made["barton_strength_low"] == pytest.approx(low * tau)
         assert made["barton_strength_high"] == pytest.approx(min(high * tau, steepest))
         for name in ("peak_strength", "peak_contact_strength"):
-            value, ends = made[name], (made[f"{name}_low"], made[f"{name}_high"])
-            assert ends[0] <= low * value * (1 + 1e-9)
-            assert ends[1] >= min(high * value, steepest) * (1 - 1e-9)
+            value, ends = float(made[name]), (made[f"{name}_low"], made[f"{name}_high"])
+            apart = low * value, high * value
+            if source == "assumed":
+                angle = np.degrees(np.arctan(value / 5))
+                apart = [5 * np.tan(np.radians(angle + off)) for off in (-5, 5)]
+            assert ends[0] <= apart[0] * (1 + 1e-9)
+            assert ends[1] >= min(apart[1], steepest) * (1 - 1e-9)
         widths[source] = float(made["peak_strength_high"] - made["peak_strength_low"])
-    assert widths["measured"] < widths["assumed"] / 3
+    assert widths["measured"] < widths["assumed"]
 
 
 def test_error_over_realisations_falls_with_the_number_of_contacts():

@@ -1,15 +1,23 @@
 """Stiffness at the reference pressures: solved there, or that of the curve, or none."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import xarray as xr
 from made_settings import made_settings
 from made_stages import scan, stages_of
 
 from fractalcontact.core.limits import MIN_FREE_NODES, REFERENCE_PRESSURES
 from fractalcontact.core.settings import Material
 from fractalcontact.joint.joint import composite_topography
-from fractalcontact.laws.reference_states import further_pressures, with_curve_stiffness
-from fractalcontact.laws.seated_laws import curve_stiffness
+from fractalcontact.laws.reference_states import (
+    NO_LOAD,
+    further_pressures,
+    reference_stiffness,
+    with_curve_stiffness,
+)
+from fractalcontact.laws.seated_laws import ON_SUSPECTS, curve_stiffness
 from fractalcontact.states.settlement import window_settlement
 from fractalcontact.states.state_scalars import resolved_slope
 from fractalcontact.study.configuration import solver_settings
@@ -52,6 +60,28 @@ def test_the_curve_stands_in_for_a_state_without_a_stiffness_at_those_pressures_
     stiffness = np.where(pressure < 2, np.nan, 10 * pressure)
     found = with_curve_stiffness(pressure, stiffness, 0.05 * np.log(pressure))
     np.testing.assert_allclose(found, [np.nan, np.nan, 20.0, 25, 50, 100, 250])
+
+
+def test_a_pressure_below_which_the_scan_decides_says_so():
+    """Loads up to 1.5 MPa act on suspicious cells; flush faces have no stiffness anywhere."""
+    pressure = np.geomspace(0.25, 50, 12)
+    values = {
+        "interface_stiffness": 12 * pressure**0.9,
+        "suspect_load_share": np.where(pressure < 1.5, 0.9, 0.2),
+        "resolved": np.ones(12, bool),
+        "nominal_pressure": pressure,
+    }
+    curves = xr.Dataset(
+        {name: ("normal_force", value) for name, value in values.items()},
+        {"resolution": [1], "normal_force": 100 * pressure},
+    )
+    flush = SimpleNamespace(
+        cells=[0], offsets=[0.0], direction="E", composite=lambda cells: np.zeros((8, 8))
+    )
+    found = reference_stiffness(flush, curves, xr.Dataset())
+    assert np.isnan(found["reference_stiffness"]).all()
+    assert found["reference_stiffness_reason"].values.tolist() == [ON_SUSPECTS, NO_LOAD, NO_LOAD]
+    assert found["reference_pressure"].attrs["units"] == "MPa"
 
 
 def test_few_free_nodes_have_no_slope():

@@ -1,4 +1,4 @@
-"""Laws of the closure from a seat, and the stiffness at set pressures."""
+"""Laws of the closure from a seat, and values at set pressures."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ import xarray as xr
 
 from fractalcontact.core.limits import REFERENCE_PRESSURES
 from fractalcontact.laws.seated_laws import (
-    NO_LOAD,
     ON_SUSPECTS,
     add_seated_laws,
     at_reference_pressures,
@@ -17,19 +16,16 @@ PRESSURE = np.geomspace(0.25, 50, 12)
 DIMS = ("direction", "offset", "resolution", "normal_force")
 
 
-def curves_of(*closures, pressure=PRESSURE, seat=None, stiffness=None, resolved=True, share=0.0):
+def curves_of(*closures, pressure=PRESSURE, seat=None, resolved=True, share=0.0):
     """Closure stages with one offset and as many resolutions (1, 2, 4) as there are curves."""
     shape = (1, 1, len(closures), len(pressure))
     values = np.reshape(closures, shape)
     seats = np.full(shape[:3], pressure[0] if seat is None else seat)
-    stiffnesses = np.ones(shape) if stiffness is None else np.broadcast_to(stiffness, shape)
     return xr.Dataset(
         {
             "seated_closure": (DIMS, values),
             "resolved": (DIMS, np.broadcast_to(resolved, shape)),
             "suspect_load_share": (DIMS, np.broadcast_to(share, shape)),
-            "interface_stiffness": (DIMS, stiffnesses),
-            "interface_stiffness_error": (DIMS, 0.01 * stiffnesses),
             "seating_pressure": (DIMS[:3], seats),
             "nominal_pressure": ("normal_force", pressure),
         },
@@ -113,29 +109,22 @@ def test_where_k_ni_is_undetermined_the_reason_says_what_would_help(closure, mad
     assert words in found["seated_k_ni_reason"].item()
 
 
-def test_the_stiffness_at_a_pressure_is_read_off_a_power_law_exactly():
-    """Between states that are resolved; none outside them."""
+def test_a_value_at_a_pressure_is_read_off_a_power_law_exactly():
+    """Between states that are known; none outside them."""
     stiffness = 12 * PRESSURE**0.9
-    found = laws_of(hyperbola(PRESSURE), stiffness=stiffness)
     expected = 12 * np.array(REFERENCE_PRESSURES) ** 0.9
-    np.testing.assert_allclose(found["reference_stiffness"], expected, rtol=1e-12)
-    light = laws_of(hyperbola(PRESSURE), stiffness=stiffness, resolved=PRESSURE < 8)
-    assert np.isfinite(light["reference_stiffness"]).values.tolist() == [True, True, False]
-    assert found["reference_pressure"].attrs["units"] == "MPa"
+    np.testing.assert_allclose(at_reference_pressures(PRESSURE, stiffness), expected, rtol=1e-12)
+    light = at_reference_pressures(PRESSURE, np.where(PRESSURE < 8, stiffness, np.nan))
+    assert np.isfinite(light).tolist() == [True, True, False]
 
 
-def test_states_on_suspicious_cells_enter_no_fit_and_no_stiffness():
+def test_states_on_suspicious_cells_enter_no_fit():
     """The law of the sound states is found again, whatever the others are."""
     share = np.where(PRESSURE < 1.5, 0.9, 0.2)
     closure = seated(hyperbola(PRESSURE) * (1 + 1e-5 * np.cos(9 * PRESSURE)))
     closure[1:3] *= 2
-    found = laws_of(closure, stiffness=12 * PRESSURE**0.9, share=share)
+    found = laws_of(closure, share=share)
     assert found["seated_k_ni"] == pytest.approx(30, rel=1e-4)
-    assert np.isfinite(found["reference_stiffness"]).values.tolist() == [False, True, True]
-    reasons = found["reference_stiffness_reason"].values.tolist()
-    assert reasons == [ON_SUSPECTS, "", ""]
-    few = laws_of(closure, stiffness=12 * PRESSURE**0.9, resolved=PRESSURE < 8)
-    assert few["reference_stiffness_reason"].values.tolist() == ["", "", NO_LOAD]
 
 
 def test_a_joint_on_suspicious_cells_under_every_load_says_so():

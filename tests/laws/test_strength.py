@@ -19,6 +19,7 @@ from fractalcontact.joint.jrc import FITS, profile_roughness
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.laws.strength import (
     ABOVE_SCALE,
+    BARTON_TRUNCATED,
     HALF_TOUCHES,
     OF_WINDOW,
     OFF_LENGTHS,
@@ -277,23 +278,37 @@ def test_no_law_is_scaled_beyond_bartons_roughness_and_lengths():
             np.testing.assert_array_equal(end, barton_strength(pressure, 30.0, of, 100.0))
 
 
+def test_a_strength_at_the_cut_off_of_bartons_law_is_a_bound_and_no_result():
+    """phi_b + JRC log10(JCS/sigma): 79.5 degrees at 0.5 MPa, 53.5 at 10 MPa."""
+    stated = Friction(basic_friction_angle=30.0, joint_wall_strength=150.0)
+    law = _by_barton(Estimate(20.0, 18.0, 20.0), stated, 100.0, np.array([0.5, 10.0]))
+    steepest = 0.5 * np.tan(np.radians(70))
+    for name in ("barton_strength", "barton_scaled_strength"):
+        assert law[name].value[0] == pytest.approx(steepest)
+        assert law[f"{name}_valid"].tolist() == [False, True]
+        assert law[f"{name}_reason"].tolist() == [BARTON_TRUNCATED, ""]
+    unknown = Friction(basic_friction_angle=np.nan, joint_wall_strength=150.0)
+    assert _by_barton(Estimate(20.0), unknown, 100.0, np.array([0.5]))["barton_strength_valid"]
+
+
 def test_blocks_have_a_strength_by_each_rule_that_holds_for_their_length(twin):
     chosen = replace(settings([0.2, 0.8]), block_lengths=[100.0, 200.0, 1000.0])
     found = strength_of(twin, chosen).squeeze("contact_direction")
     assert found["block_length"].values.tolist() == [100.0, 200.0, 1000.0]
-    reasons = found["block_reason"].values.tolist()
-    assert reasons == [
+    reasons = found["block_reason"]
+    assert reasons.isel(normal_force=-1).values.tolist() == [
         [OF_WINDOW] * 3,
         [OF_WINDOW] * 3,
         ["", UNSCALED, UNSCALED],
         ["", "", OFF_LENGTHS],
     ]
-    known = np.isfinite(found["block_strength"]).all("normal_force")
-    np.testing.assert_array_equal(known, np.array(reasons) == "")
+    np.testing.assert_array_equal(np.isfinite(found["block_strength"]), reasons == "")
     pressure, jrc = found["nominal_pressure"], found["jrc_used"].item()
-    of_block = found["block_strength"].sel(rule="Barton and Bandis", block_length=200.0)
+    place = {"rule": "Barton and Bandis", "block_length": 200.0}
+    of_block, is_known = found["block_strength"].sel(place), reasons.sel(place) == ""
+    assert is_known.any()
     expected = barton_strength(pressure, 30.0, *scaled_joint(jrc, 100.0, 200.0))
-    np.testing.assert_allclose(of_block, expected)
+    np.testing.assert_allclose(of_block, expected.where(is_known))
     none = strength_of(twin, settings([0.2, 0.8]))
     assert none["block_strength"].size == 0
 
@@ -304,15 +319,22 @@ def within_largest_angle(end, strength):
     return np.where(end > steepest, np.maximum(steepest, strength["peak_strength"]), end)
 
 
+def by_assumed_angle(value, strength, sign):
+    """Change of a strength by an assumed phi_b that is off by 5 degrees, MPa."""
+    pressure = strength["nominal_pressure"]
+    angle = np.degrees(np.arctan(value / pressure))
+    return shear_strength(pressure, angle + sign * 5)[0] - value
+
+
 def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):
     """Their curves rise by other angles; ends are those of the angle, truncated as it is."""
     chosen = settings([0.2, 0.8])
     dilatancy, joint = pressed(twin, chosen)
     alone = joint_strength(dilatancy, joint, twin, chosen).squeeze("contact_direction")
     assert np.isnan(alone["peak_angle_spread"])
-    for end, sign, factor in (("low", -1, 0.9), ("high", 1, 1.9)):
+    for end, sign in (("low", -1), ("high", 1)):
         value = alone["peak_strength"]
-        off = np.hypot(alone["peak_strength_error"], (factor - 1) * value)
+        off = np.hypot(alone["peak_strength_error"], by_assumed_angle(value, alone, sign))
         expected = within_largest_angle(np.maximum(value + sign * off, 0), alone)
         np.testing.assert_allclose(alone[f"peak_strength_{end}"], expected, rtol=1e-6)
     own = dilatancy["elastic_dilatancy"].isel(normal_force=1).values.ravel()
@@ -334,9 +356,9 @@ def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):
     np.testing.assert_array_equal(value, alone["peak_strength"])
     angles = found["peak_dilatancy_angle"]
     off = np.hypot(half, found["peak_dilatancy_angle_error"])
-    for end, sign, factor in ((low, -1, 0.9), (high, 1, 1.9)):
+    for end, sign in ((low, -1), (high, 1)):
         by_angle, _ = shear_strength(found["nominal_pressure"], 30 + angles + sign * off)
-        whole = np.hypot(by_angle - value, (factor - 1) * value)
+        whole = np.hypot(by_angle - value, by_assumed_angle(value, found, sign))
         expected = within_largest_angle(np.maximum(value + sign * whole, 0), found)
         np.testing.assert_allclose(end, expected)
 

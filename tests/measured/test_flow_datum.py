@@ -63,6 +63,29 @@ def test_without_such_a_reading_nothing_is_calibrated(joint, tested):
     assert row["status"] == "computed"
     assert np.isnan(row["calibrated"].value).all()
     assert np.isnan(row["datum"].value)
+    assert "datum_pressure" in row["datum_reason"]
+
+
+def test_one_test_sets_the_distance_of_all_and_each_is_solved_once(joint, tested, monkeypatch):
+    computed, measured = tested
+    solved, gaps = [], Joint.gaps_on_branch
+
+    def counted(self, test, largest, pressures):
+        solved.append(test)
+        return gaps(self, test, largest, pressures)
+
+    monkeypatch.setattr(Joint, "gaps_on_branch", counted)
+    setting = MeasuredTest("flow", "first.csv", {}, branch="load", way="along", datum_pressure=3.0)
+    readings = [Curve.of(PRESSURES, measured, 0.0)] * 2
+    rows = [row_of(computed, of) for of in readings]
+    other, own = compare_flow(joint, [LOAD, setting], readings, rows, FLOW)
+    assert np.isnan(other["datum"].value)
+    assert setting.label in other["datum_reason"]
+    assert own["datum_reason"] == ""
+    assert solved == [LOAD, setting]
+    # One path of loads has one state more: both agree to the tolerance of the solver.
+    values = own["calibrated"].value, other["calibrated"].value
+    np.testing.assert_allclose(*values, rtol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -127,6 +127,13 @@ def test_every_number_is_the_atlas_s(atlas, name):
     json.dumps(states, allow_nan=False)
 
 
+def test_flow_has_the_interval_of_the_page(atlas):
+    states = packed_states(atlas, "pair")
+    for name in ("transmissivity_along", "transmissivity_across", "hydraulic_aperture_along"):
+        for end in ("low", "high"):
+            assert f"flow/{name}_{end}" in states["arrays"]
+
+
 def test_the_count_law_passes_through_the_counts_it_was_fitted_to(atlas):
     states = packed_states(atlas, "pair")
     entry, numbers = states["arrays"]["law_count"], unpacked(states["numbers"], "<f8")

@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
 from fractalcontact.pages.captions import symbols
 from fractalcontact.pages.explorer import write_explorer
@@ -109,6 +110,9 @@ def of_summary(folder, subject):
                     fields["determined"] = f"{start}_determined"
                 if row.why:
                     fields["remark"] = f"{start}_reason"
+                if number.missing:  # what is no result is empty in the table
+                    nothing = dict.fromkeys(("error", "population", "hardest"), math.nan)
+                    number = number._replace(estimate=Estimate(), **nothing)
                 yield row, number, {of: cells[name] for of, name in fields.items()}, TABLE
 
 
@@ -175,6 +179,8 @@ def of_explorer(folder, subject):
                 assert row.source in states["of_joint"]
                 masks = ["by_scan", "at_touch"][: 1 + row.from_touch]
                 shown["determined"] = not any(at(f"undetermined/{mask}", load) for mask in masks)
+                most = states["most"].get(row.source, math.inf) * abs(shown["value"])
+                shown["determined"] &= not shown.get("error", math.nan) > most
             if row.reason and not math.isfinite(number.value) and solved[load]:
                 reasons = states["reasons"][row.source]
                 shown["missing"] = reasons["words"][reasons["places"][index_of(row.source, load)]]

@@ -432,16 +432,15 @@ def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
         ):
             ends = {"k_ni": 100.0, "k_ni_low": 90.0, "k_ni_high": high}
             why = "it is told so" if not says else ""
-            told = {"seated_k_ni_determined": says, "seated_k_ni_reason": why}
-            changed = with_told(atlas, f"closure/{name}", **told)
-            changed = with_told(changed, f"error_budget/{name}", **ends)
+            told = {"k_ni_determined": says, "k_ni_reason": why}
+            changed = with_told(atlas, f"error_budget/{name}", **ends, **told)
             found = sheet_of(Subject.of(changed, name)).of("k_ni")
             assert found.estimate.ends == (100, 90, high)
             assert (found.determined, found.remark) == (determined, reason)
         row = table.loc[[name]].iloc[0]
-        known = Subject.of(atlas, name).states("closure")
-        assert row["k_ni_determined"] == known["seated_k_ni_determined"].item()
-        assert row["k_ni_reason"] == known["seated_k_ni_reason"].item()
+        known = Subject.of(atlas, name)["error_budget"]
+        assert row["k_ni_determined"] == known["k_ni_determined"].item()
+        assert row["k_ni_reason"] == known["k_ni_reason"].item()
 
 
 def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):

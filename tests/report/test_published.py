@@ -15,6 +15,7 @@ from fractalcontact.report.published import (
     BY_SCAN,
     BY_TOUCH,
     PLACES,
+    TOO_UNCERTAIN,
     Number,
     Row,
     published,
@@ -143,6 +144,25 @@ def test_what_is_no_result_is_missing_and_a_fit_that_is_none_is_undetermined():
     ends = flagged | {"width_low": [0.9, 1.9, 2.9], "width_high": [1.1, 2.1, 3.1]}
     fits = read(row(flag="closure/says", range=("a/b", "a/c")), subject(**ends))
     assert [(one.missing, one.determined) for one in fits] == [("", True), ("", False), ("", False)]
+
+
+def test_a_number_that_its_error_outweighs_is_undetermined_and_says_so():
+    of = row(error="closure/off", most=0.5, by_scan=True)
+    found = read(of, subject(width=[1, 2, 3], off=[0.4, 1.2, 0.1]))
+    assert [one.determined for one in found] == [True, False, False]
+    assert [one.remark for one in found] == ["", TOO_UNCERTAIN, BY_SCAN]
+    assert not any(one.missing for one in found)
+    without = read(row(error="closure/off"), subject(width=[1, 2, 3], off=[0.4, 1.2, 0.1]))
+    assert all(one.determined for one in without)
+
+
+def test_a_number_that_is_no_result_is_empty_in_a_table():
+    flagged = subject(width=[1, 2, 3], says=[1, 0, 1], width_low=[0, 1, 2], width_high=[2, 3, 4])
+    of = row(flag="closure/says", note="a bound", summary="breadth", interval="fit", why=True)
+    found = columns_of(of, read(of, flagged)[1])
+    assert found.pop("breadth_reason") == "a bound"
+    assert np.isnan(list(found.values())).all()
+    assert columns_of(of, read(of, flagged)[0])["breadth_mm"] == 1
 
 
 def test_the_scan_and_a_wide_interval_leave_a_number_undetermined():

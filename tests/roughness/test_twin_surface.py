@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import kurtosis, skew
 
 from fractalcontact.roughness.plane_spectrum import plane_spectrum
-from fractalcontact.roughness.twin_surface import twin_surface
+from fractalcontact.roughness.twin_surface import twin_doubt, twin_surface
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = (0.1, 0.1)
@@ -45,3 +45,16 @@ def test_a_seed_is_one_twin():
     assert surface.drawn(4).shape == (64, 48)
     np.testing.assert_array_equal(surface.drawn(4), surface.drawn(4))
     assert np.abs(surface.drawn(4) - surface.drawn(5)).max() > 0.1
+
+
+def test_twins_are_doubted_where_the_surface_has_steps_or_longer_waves_than_they_have():
+    doubted = [bool(twin_doubt(_rough(seed), SPACING)) for seed in range(12)]
+    assert sum(doubted) <= 1
+    rough = _rough(1)
+    x = np.arange(128) / 128
+    steps = rough + 2.0 * np.floor(8 * x)
+    assert "kurtosis" in twin_doubt(steps, SPACING)
+    swell = rough + 3.0 * np.sin(2 * np.pi * 2.5 * x)
+    assert "longest waves" in twin_doubt(swell, SPACING)
+    # Neither a tilt nor the unit changes what is said.
+    assert twin_doubt(1e3 * (swell + 5 * x), (100.0, 100.0)) == twin_doubt(swell, SPACING)

@@ -54,10 +54,24 @@ CHANGED = {
 }
 
 
+#: Atlases whose figures several tests look at, each with its drawings.
+_KEPT = []
+
+
+def keep_drawings(atlas):
+    """The atlas, each of whose figures :func:`draw` draws once: tests do not change them."""
+    _KEPT.append((atlas, {}))
+    return atlas
+
+
 def draw(atlas, figure, subject):
     """A figure by its name, of a specimen or of a list of them."""
-    with print_style():
-        return drawer_of(figure)(atlas, subject)
+    drawings = next((drawings for kept, drawings in _KEPT if kept is atlas), {})
+    key = figure, str(subject)
+    if key not in drawings:
+        with print_style():
+            drawings[key] = drawer_of(figure)(atlas, subject)
+    return drawings[key]
 
 
 def changed(atlas, group, change=None, **values):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from forked_snakemake import dry_run
 from places import ROOT
 from stage_names import EXPERIMENTS
 from stated import array_sidecar
@@ -42,8 +43,11 @@ def command(study, *options):
 
 
 def run(project, study="config/smoke.yaml", *options):
+    words = command(study, *options)
+    if "--dry-run" in options:
+        return dry_run(project, *words[words.index("snakemake") + 1 :])
     return subprocess.run(
-        command(study, *options),
+        words,
         cwd=project,
         capture_output=True,
         text=True,

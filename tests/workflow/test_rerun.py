@@ -1,4 +1,4 @@
-"""What a change makes again, on one small study that was made up to its atlas and one figure."""
+"""What a change makes again, on one small study that was made whole."""
 
 import base64
 import itertools
@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 import yaml
-from projects import copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
+from projects import jobs_of, made, rough_heights, run, write_scan
 from stage_names import OF_SPECIMENS
 from stated import array_sidecar
 
@@ -22,21 +22,6 @@ pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
 RULE = "roughness_and_composite"
 ATLAS, FIGURE = "results/test/atlas.nc", "results/test/figures/rock/fig02_relief.png"
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    """A study of one scan against a plane, made up to its atlas and one figure."""
-    folder = copy_project(tmp_path_factory.mktemp("finished"))
-    document = yaml.safe_load((folder / small_study(folder)).read_text())
-    document["defaults"] |= {"opposite": "flat", "resolutions": [1, 2]}
-    document["figures"] = ["fig02_relief"]
-    (folder / STUDY).write_text(yaml.safe_dump(document))
-    write_scan(folder, "rock")
-    done = made(folder, STUDY, targets=[ATLAS, FIGURE])
-    assert done.returncode == 0, done.stderr[-3000:]
-    (folder / "said").write_text(done.stdout)
-    return folder
 
 
 @pytest.fixture
@@ -71,12 +56,13 @@ def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(pr
 
 
 def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
-    first, *jobs, last = (finished / "said").read_text().splitlines()
+    first, *jobs, last, page = (finished / "said").read_text().splitlines()
     n = len(jobs)
     assert first == f"{n} jobs; what is made goes to results/test"
     assert last.startswith(f"{n} jobs done in ")
-    assert [line.split("]")[0] for line in jobs] == [f"[{k}/{n}" for k in range(1, n + 1)]
-    assert any(line[6:].startswith("rock: contact states") for line in jobs)
+    assert page.endswith("results/test/index.html")
+    assert [line.split("]")[0] for line in jobs] == [f"[{k:2}/{n}" for k in range(1, n + 1)]
+    assert any("] rock: contact states" in line for line in jobs)
     assert max(map(len, jobs)) <= 120
     crate = json.loads((finished / "results/test/ro-crate-metadata.json").read_text())
     entities = {entity["@id"]: entity for entity in crate["@graph"]}

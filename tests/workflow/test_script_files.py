@@ -2,6 +2,10 @@
 
 import importlib
 import logging
+import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,7 +20,8 @@ from fractalcontact.core.errors import InputError
 
 @pytest.fixture
 def files(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / "workflow/scripts"))
+    for folder in ("workflow", "workflow/scripts"):
+        monkeypatch.syspath_prepend(str(ROOT / folder))
     return importlib.import_module("_files")
 
 
@@ -58,3 +63,43 @@ def test_figures_that_failed_are_listed_with_their_folder(files, tmp_path, caplo
         figures.say_drawn(result, tmp_path / "undrawn.txt", folder, logging.getLogger())
         assert (tmp_path / "undrawn.txt").read_text() == listed
     assert "figure joint was not drawn\nKeyError: 'x'" in caplog.text
+
+
+#: Runs a script until it imports numpy, and then prints the variable that BLAS reads.
+UNTIL_NUMPY = """
+import os, runpy, sys
+
+class Noting:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name == "numpy":
+            print(os.environ["OPENBLAS_NUM_THREADS"], flush=True)
+            os._exit(0)
+
+sys.meta_path.insert(0, Noting)
+sys.path.insert(0, os.path.dirname(sys.argv[1]))
+runpy.run_path(sys.argv[1])
+"""
+
+
+def first_import(script):
+    """The first line of a script that imports a module of the project."""
+    text = script.read_text(encoding="utf-8")
+    return re.search(r"(?m)^from (?:_|engine|fractalcontact|contactlab).*", text)[0]
+
+
+#: A script for each way to begin; all others import the same modules first.
+BEGINNINGS = {first_import(path): path for path in (ROOT / "workflow/scripts").glob("[a-z]*.py")}
+
+
+@pytest.mark.parametrize("script", BEGINNINGS.values(), ids=lambda path: path.stem)
+def test_blas_has_one_thread_in_every_job(script):
+    """A job of two threads, too: Snakemake sets the variable to the threads of the job."""
+    paths = os.pathsep.join(str(ROOT / name) for name in ("src", "workflow"))
+    done = subprocess.run(
+        [sys.executable, "-c", UNTIL_NUMPY, str(script)],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "2"},
+    )
+    assert done.stdout == "1\n", done.stderr

@@ -6,9 +6,9 @@ import subprocess
 import sys
 
 import pytest
-import yaml
+from forked_snakemake import dry_run
 from places import ROOT
-from projects import copy_project, jobs_of, small_study, write_scan
+from projects import copy_project, jobs_of
 
 pytestmark = pytest.mark.workflow
 SMOKE = ("--configfile", "config/smoke.yaml")
@@ -17,6 +17,8 @@ STUDY = ("--cores", "2", "--configfile", "config/test.yaml")
 
 def snakemake(folder, *words):
     """Snakemake in a folder, with no profile and no plugin."""
+    if "-n" in words:
+        return dry_run(folder, *words)
     return subprocess.run(
         [sys.executable, "-m", "snakemake", *words],
         cwd=folder,
@@ -42,20 +44,6 @@ def test_the_picture_of_the_rules_is_theirs_and_the_page_on_them_names_every_rul
     assert not [name for pair in names if f"`{(name := ''.join(pair))}`" not in page]
 
 
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    """A study of one scan against a plane, made by Snakemake alone."""
-    folder = copy_project(tmp_path_factory.mktemp("finished"))
-    small_study(folder, figures=["fig02_relief"])
-    document = yaml.safe_load((folder / "config/test.yaml").read_text())
-    document["defaults"] |= {"opposite": "flat", "resolutions": [1, 2]}
-    (folder / "config/test.yaml").write_text(yaml.safe_dump(document))
-    write_scan(folder, "rock")
-    done = snakemake(folder, *STUDY)
-    assert done.returncode == 0, done.stderr[-3000:]
-    return folder
-
-
 @pytest.fixture
 def project(finished, tmp_path):
     return shutil.copytree(finished, tmp_path / "project", symlinks=True)
@@ -74,6 +62,17 @@ def test_options_of_snakemake_do_what_its_manual_says(project):
     report = snakemake(project, *STUDY[2:], "--report", "results/report.html")
     assert report.returncode == 0, report.stderr[-3000:]
     assert "fig02_relief" in (project / "results/report.html").read_text()
+
+
+def test_snakemake_alone_makes_the_bytes_that_make_has(project):
+    """One job of the chain; test_switched_off.py makes all of it."""
+    closure = project / "results/test/closure/rock.nc"
+    before, time = closure.read_bytes(), closure.stat().st_mtime_ns
+    rule = "closure_and_box_counts"
+    done = snakemake(project, *STUDY, "-R", rule, "--until", rule)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert closure.stat().st_mtime_ns > time
+    assert closure.read_bytes() == before
 
 
 def test_touched_results_count_as_made(project):

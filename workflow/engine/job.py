@@ -9,8 +9,9 @@ import sys
 import time
 from pathlib import Path
 
-# BLAS reads this when numpy is imported. Two threads of BLAS that wait for each other make the
-# L-BFGS-B of another code four times slower. The threads of our own kernels are set elsewhere.
+# BLAS reads this when numpy is imported, so scripts import this module before numpy. Two threads of
+# BLAS that wait for each other make the L-BFGS-B of another code four times slower. The threads of
+# our own kernels are set elsewhere.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fractalcontact.core import checksums

@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+# Scripts import this file first of all, and it imports numpy. This sets the threads of BLAS before.
+import engine.job  # noqa: F401
+
 from fractalcontact.core import checksums, netcdf
 from fractalcontact.core.errors import InputError
 

@@ -6,7 +6,16 @@ from typing import Any
 
 from ..core import text
 from ..core.subject import Subject
-from ..report.published import UNITS_AT, Number, Row, array_of, fitted_over, read, shown_in
+from ..report.published import (
+    UNITS_AT,
+    Number,
+    Row,
+    array_of,
+    fitted_over,
+    is_of_law,
+    read,
+    shown_in,
+)
 
 #: Sections of a card, in their order.
 SECTIONS = ("material", "roughness", "stiffness", "contact", "aperture", "strength", "tests")
@@ -51,6 +60,12 @@ def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
     """Row of an entry at a pressure, MPa, or its absence with the reason."""
     rows = (row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure)
     return next(rows, {"missing": curve.get("missing", "not solved there")})
+
+
+def jrc_of_law(card: Mapping[str, Any]) -> dict[str, Any]:
+    """Row of the JRC by Barton's law along the sliding; empty where the card has none."""
+    rows = card["entries"]["jrc"].get("values", ())
+    return next((row for row in rows if is_of_law(row["at"], card["direction"])), {})
 
 
 def reference_of(card: Mapping[str, Any]) -> float:

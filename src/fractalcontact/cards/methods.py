@@ -7,9 +7,9 @@ from typing import Any
 import xarray as xr
 
 from ..core.labels import BOUNDARIES
-from ..core.limits import JRC_SAMPLING
 from ..core.text import percent, short, with_unit
-from ..core.window import cell_side, nominal_area
+from ..core.window import window_fraction
+from .entries import jrc_of_law
 
 #: Sources that the paragraph may name.
 _SOURCES = (
@@ -41,8 +41,8 @@ def methods_of(card: Mapping[str, Any], scan: str = "") -> str:
 
 def scan_words(specimen: xr.Dataset, outliers: str) -> str:
     """Sentence on the part of the scan used, its outliers and the registration of two faces."""
-    share = nominal_area(specimen) / (cell_side(specimen) ** 2 * int(specimen["valid"].sum()))
-    words = f"The window is {percent(share)} of the scan; outlying cells were {_TREATED[outliers]}"
+    part = percent(window_fraction(specimen))
+    words = f"The window is {part} of the scan; outlying cells were {_TREATED[outliers]}"
     record = json.loads(specimen.attrs.get("registration") or "{}")
     if not record:
         return f"{words}."
@@ -120,9 +120,8 @@ def _strength(card):
 
 def _jrc_step(card):
     """Step of the JRC of Barton's law, in words; empty without one."""
-    rows = card["entries"]["jrc"].get("values", ())
-    steps = [row["at"]["step"] for row in rows if row["at"]["sampling"] == JRC_SAMPLING]
-    return f" at a step of {with_unit(steps[0], 'mm')}" if steps else ""
+    jrc = jrc_of_law(card)
+    return f" at a step of {with_unit(jrc['at']['step'], 'mm')}" if jrc else ""
 
 
 def _versions(versions):

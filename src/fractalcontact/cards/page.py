@@ -5,6 +5,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ..core.text import MISSING, measured, percent, short
+from ..core.verdicts import UNDETERMINED
 from ..pages.summary import STRENGTH_RULES
 from ..report.caveats import aperture_caveat
 from ..report.published import row_of
@@ -113,24 +114,33 @@ def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dic
 
 
 def permeability_words(entries: Mapping[str, Any]) -> str:
-    """Constants of the permeability over pressure, by branch; empty without any."""
-    constants = {
-        row["at"]["branch"]: [
-            f"{short(one['value'])} {ends_in_words(one)}".rstrip() for one in (row, alpha)
-        ]
-        for row, alpha in zip(
-            *(entries.get(f"permeability_{of}", {}).get("values", ()) for of in ("k_0", "alpha")),
-            strict=True,
-        )
-        if "value" in row and row["at"]["branch"] in ("load", "reload")
+    """Constants of the permeability over pressure by branch, and their range; empty without any."""
+    curves = [entries.get(f"permeability_{name}", {}) for name in ("k_0", "alpha")]
+    by_branch = {
+        k_0["at"]["branch"]: [_constant(one) for one in (k_0, alpha)]
+        for k_0, alpha in zip(*(curve.get("values", ()) for curve in curves), strict=True)
+        if "value" in k_0
     }
-    if not constants:
+    # Unloading and reloading are one curve.
+    by_branch.pop("unload", None)
+    if not by_branch:
         return ""
     words = "; ".join(
-        f"on {branch}ing k_0 = {k_0} mm2, alpha = {alpha} per MPa"
-        for branch, (k_0, alpha) in constants.items()
+        f"on {branch}ing k_0 = {k_0}, alpha = {alpha}" for branch, (k_0, alpha) in by_branch.items()
     )
-    return f"Permeability k = k_0 exp(-alpha sigma') along the sliding: {words} (fit alone)."
+    ends = curves[0]["range"]
+    over = f"{short(ends['low'])} to {short(ends['high'])} {ends['unit']}"
+    return (
+        f"Permeability k = k_0 exp(-alpha sigma') along the sliding from {over}, k_0 in mm2, alpha "
+        f"per MPa: {words} (fit alone)."
+    )
+
+
+def _constant(number: Mapping[str, Any]) -> str:
+    """Constant of a fit with its interval, or that it is undetermined."""
+    if not number["determined"]:
+        return UNDETERMINED
+    return f"{short(number['value'])} {ends_in_words(number)}".rstrip()
 
 
 def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:

@@ -28,7 +28,8 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
-from ..stages.specimen import prepare_specimen
+from ..scan.read import read_faces
+from ..stages.specimen import specimen_of_faces
 from ..states.states import hardness_of
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings, solver_settings
@@ -120,7 +121,8 @@ def _check(scan, study, source, stated):
     if is_contact_map(options):
         return _map_row(scan, read_contact_map(scan.lower, options, label=scan.name))
     settings = resolve_settings(study, scan.name, own, source, scan)
-    specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
+    faces = read_faces(scan.lower, scan.upper, options)
+    specimen = specimen_of_faces(*faces, settings, scan.name)
     _require_solvable(specimen, settings)
     require_files(settings.measured)
     dimension = surface_dimension(
@@ -131,7 +133,7 @@ def _check(scan, study, source, stated):
     if specimen.attrs["outlier_count"] and settings.outliers == "fill" and not scan.upper:
         # Outliers that are filled may be missing cells, or a misread file: their heights tell.
         kept = replace(settings, outliers="keep")
-        as_scanned = prepare_specimen(scan.lower, None, options, kept, scan.name)
+        as_scanned = specimen_of_faces(*faces, kept, scan.name)
         row.warnings.append(outlier_words(as_scanned, "filled in the study"))
     _add_tests(row, tests)
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)

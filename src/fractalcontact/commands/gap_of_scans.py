@@ -23,6 +23,7 @@ from ..cards.apertures import MAP_ENDINGS, write_aperture
 from ..core.errors import InputError, said_in_one_line
 from ..core.labels import printable
 from ..core.text import percent
+from ..scan.raw import IncompleteSidecar
 from ..scan.read import read_faces
 from ..study.checks import read_sidecar
 from ..surface.cleaning import clean_faces
@@ -49,8 +50,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         raise InputError(f"{out}: write a file that ends in {', '.join(MAP_ENDINGS)}")
     # Settings of a study in the same sidecar, such as a material, do not change the gap.
     keys, _ = read_sidecar(Path(given.keys) if given.keys else None)
+    keys = dict(keys) | ({"unit": given.unit} if given.unit else {})
     lower, upper = Path(given.lower), Path(given.upper)
-    gap = gap_of(lower, upper, complete(lower, upper, keys, given.unit), given.outliers)
+    try:
+        gap = gap_of(lower, upper, keys, given.outliers)
+    except IncompleteSidecar:
+        # Keys decide how a file is read: one that needs a draft is read again as that says.
+        gap = gap_of(lower, upper, complete(lower, upper, keys), given.outliers)
     picture = out.with_suffix(".png")
     write_aperture(gap, out)
     _draw(gap, picture)
@@ -59,15 +65,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def complete(lower: Path, upper: Path, keys: Mapping, unit: str | None) -> dict[str, Any]:
-    """Keys of two files, with the unit and, where files need more, what a draft suggests.
+def complete(lower: Path, upper: Path, stated: Mapping) -> dict[str, Any]:
+    """Keys of two files, with what a draft suggests where they need more than is stated.
 
     Raises
     ------
     InputError
         If the draft leaves a key open.
     """
-    stated = dict(keys) | ({"unit": unit} if unit else {})
     drafted = drafted_keys(lower, upper, stated)
     left = [key for key, value in drafted.items() if value is None]
     if not left:

@@ -28,8 +28,16 @@ LARGEST_FRICTION_ANGLE = 70.0
 
 #: Strength of a joint over that computed with the stated phi_b, ends of an interval: phi_b measured
 #: on flat faces, the scatter of one laboratory; assumed, 5 to 95 % of 288 published shear tests
-#: beside Barton's law (median 1.23).
+#: beside Barton's law (median 1.23), for that law alone.
 FRICTION_FACTORS = {"measured": (0.87, 1.13), "assumed": (0.9, 1.9)}
+
+#: Largest error of a stiffness that is stated, as a fraction of it.
+LARGEST_STIFFNESS_ERROR = 0.5
+
+#: Half-width of an assumed phi_b, degrees, in the rules that no such tests were compared with: most
+#: flat, unweathered rock has 25 to 35 degrees (as quoted of Barton 1976, Int. J. Rock Mech. Min.
+#: Sci. 13, 255; not read).
+ASSUMED_ANGLE_ERROR = 5.0
 
 #: Largest fraction of the sub-windows of a size with a truncated angle; beyond it their mean
 #: strength is a bound and no result.

@@ -1,5 +1,7 @@
 """Window of a specimen, as its dataset states it: spacing, sides, area, place, faces."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -45,6 +47,12 @@ def window_sides(specimen: xr.Dataset) -> tuple[float, float]:
     cells = (specimen.attrs[f"window_n{axis}"] for axis in "yx")
     side_y, side_x = (n * s for n, s in zip(cells, spacing_of(specimen), strict=True))
     return side_y, side_x
+
+
+def window_fraction(specimen: xr.Dataset, cells: Sequence[int] | None = None) -> float:
+    """Fraction of the measured cells of a face that its window takes, or one of (ny, nx) cells."""
+    ny, nx = cells or (specimen.attrs["window_ny"], specimen.attrs["window_nx"])
+    return float(ny * nx / int(specimen["valid"].sum()))
 
 
 def cell_side(specimen: xr.Dataset) -> float:

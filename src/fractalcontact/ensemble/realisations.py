@@ -36,7 +36,7 @@ from ..surface.specimen import make_specimen, window_arguments
 from .null_slopes import NULL_SLOPES, null_slopes
 from .sliding import LAG_ENDS, SLIDING, sliding, spread_offsets
 from .statistics import add_statistics, add_trends
-from .twins import twin_loadings
+from .twins import doubt_of_twins, twin_loadings
 
 #: Sub-windows along a side of the window, and how many of each size are solved.
 PARTS, MAX_WINDOWS = (1, 2, 4), 4
@@ -101,7 +101,8 @@ def ensemble(
     The named specimen is the first realisation of its recipe, which
     :func:`study.configuration.resolve_embedded` gives; the realisations have its seed and those
     that follow it, and none is chosen. Without a recipe they are twins of a scan, of seeds from 1.
-    The attribute ``members`` says what they are.
+    The attribute ``members`` says what they are, ``doubt`` why first touch and dilatancy of twins
+    mean little; it is empty where nothing says so.
 
     :data:`STATES`, ``closure_from_common_seat`` and :data:`ensemble.null_slopes.NULL_SLOPES` are
     over (realisation, normal_force): under the first load at the seat, the loads that figures draw
@@ -139,6 +140,7 @@ def ensemble(
     add_statistics(result, names + (list(SLIDING) if slides else []))
     return with_pressure(result, whole.area).assign_attrs(
         members=REALISATIONS if recipe is not None else TWINS,
+        doubt="" if recipe is not None else doubt_of_twins(loading),
         direction=loading.direction,
         offset=float(loading.offsets[0]),
         map_load=_reference(loading),

@@ -16,7 +16,7 @@ from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
 from ..core.settings import EnsembleSettings
 from ..core.window import spacing_of, window_slices
-from ..roughness.twin_surface import twin_surface
+from ..roughness.twin_surface import twin_doubt, twin_surface
 from ..states.loading import JointLoading
 
 
@@ -34,13 +34,12 @@ def twin_loadings(
     it are extrapolated. A twin against a plane has the mean plane of the scan; the twin of a face
     that slides on its match is level, as a tilt adds a constant to its composite topography.
     """
-    specimen, offset = loading.specimen, int(loading.cells[0])
-    slid = specimen.attrs["opposite"] == "match"
-    whole = specimen["lower"].values.astype(float)
-    rough = whole[window_slices(specimen)] if slid else loading.composite(offset)
+    specimen, rough = loading.specimen, _surface(loading)
+    slid = _slides(loading)
     plane = 0.0 if slid else rough - without_mean_plane(rough)
+    ny, nx = specimen["lower"].shape if slid else rough.shape
     try:
-        surface = twin_surface(rough, spacing_of(specimen), (whole if slid else rough).shape)
+        surface = twin_surface(rough, spacing_of(specimen), (ny, nx))
     except ValueError as error:
         name = specimen.attrs["name"]
         raise InputError(f"specimen {name}, key 'twins': {error}; remove the key") from error
@@ -51,6 +50,24 @@ def twin_loadings(
         twin = _twin(specimen, plane + surface.drawn(seed), slid=slid)
         twin.attrs["name"] = f"{specimen.attrs['name']}, twin of seed {seed}"
         yield replace(loading, specimen=twin)
+
+
+def doubt_of_twins(loading: JointLoading[EnsembleSettings]) -> str:
+    """Reason why first touch and dilatancy of the twins of a scan mean little, or ""."""
+    return twin_doubt(_surface(loading), spacing_of(loading.specimen))
+
+
+def _slides(loading: JointLoading[EnsembleSettings]) -> bool:
+    """True of a face with its perfect match, whose twin slides as it does."""
+    return bool(loading.specimen.attrs["opposite"] == "match")
+
+
+def _surface(loading: JointLoading[EnsembleSettings]) -> np.ndarray:
+    """Surface (ny, nx) of the window that the twins are like, mm."""
+    if not _slides(loading):
+        return loading.composite(int(loading.cells[0]))
+    whole = loading.specimen["lower"].values.astype(float)
+    return whole[window_slices(loading.specimen)]
 
 
 def _twin(specimen: xr.Dataset, heights: np.ndarray, *, slid: bool) -> xr.Dataset:

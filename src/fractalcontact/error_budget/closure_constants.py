@@ -7,6 +7,8 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
+from ..core.labels import cf_attrs
+from ..core.text import percent
 from ..laws.closure_laws import fit_hyperbola, fit_semi_logarithmic
 from ..laws.seated_laws import within_span
 from ..states.seat import closure_from, seat_of
@@ -45,6 +47,9 @@ def closure_constants(
     To the interval of the fit the larger of two is added: the distance of the farthest reading, and
     the 95 % spread over registrations. Where other readings exist and none can be fitted, the
     interval is unbounded.
+
+    ``k_ni_determined`` and ``k_ni_reason`` are those of the fit, and False where k_ni at twice the
+    spacing lies outside of the interval: another grid would then give another number.
     """
     pressure = curve["nominal_pressure"].values
     of_readings, of_motions = (
@@ -66,7 +71,24 @@ def closure_constants(
             high + half,
         )
         variables |= wider.variables(name, (), unit, f"{words}, {_HOLDS}")
-    return variables
+        if name == "k_ni":
+            reason = str(curve["seated_k_ni_reason"].item()) or _off_at_twice(
+                wider, float(curve["seated_k_ni_change"])
+            )
+    words = "whether the hyperbola determines k_ni, on this grid as on one of twice the spacing"
+    return variables | {
+        "k_ni_determined": ((), not reason, cf_attrs("1", words)),
+        "k_ni_reason": ((), reason, cf_attrs("1", "why it does not, and what would help")),
+    }
+
+
+def _off_at_twice(k_ni: Estimate, change: float) -> str:
+    """Reason why a k_ni that twice the spacing changes so, a fraction, is undetermined, or ""."""
+    at_twice = k_ni.value * (1 + change)
+    if not (at_twice < k_ni.low or at_twice > k_ni.high):
+        return ""
+    by = percent(change, sign="+")
+    return f"twice the spacing changes it by {by}, out of its interval; a finer scan would help"
 
 
 def _constants(

@@ -1,5 +1,7 @@
 """Aperture map: slope, empirical laws of its hydraulic aperture."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -93,21 +95,48 @@ PERMEABILITY = {
     ),
     "permeability_alpha": ("MPa-1", "alpha of the same law"),
 }
+#: Ends of the range of that law, which all branches share: unit, long name.
+PERMEABILITY_RANGE = {
+    "permeability_pressure_low": ("MPa", "lowest pressure that the law is fitted over"),
+    "permeability_pressure_high": ("MPa", "highest pressure that the law is fitted over"),
+}
 
 
-def permeability_law(pressure: ArrayLike, transmissivity: ArrayLike) -> dict[str, Estimate]:
-    """:data:`PERMEABILITY` of k = k_0 exp(-alpha sigma) by least squares in ln k.
+def permeability_law(
+    pressure: ArrayLike, transmissivity: ArrayLike, may_fit: ArrayLike
+) -> dict[str, Any]:
+    """:data:`PERMEABILITY` and :data:`PERMEABILITY_RANGE` of k = k_0 exp(-alpha sigma).
 
-    k = h_h^2/12 = (12 T)^(2/3)/12. Codes of flow take both constants, of the effective stress:
-    the pressure on the joint where its water has none. Pressures are in MPa, T in mm3; states
-    without a passage or without T are left out. The intervals are those of the fit alone.
+    k = h_h^2/12 = (12 T)^(2/3)/12; least squares in ln k. Codes of flow take both constants, of the
+    effective stress: the pressure on the joint where its water has none. All branches are fitted
+    over the same loads, as their constants would differ by their ranges alone.
+
+    Parameters
+    ----------
+    pressure : (n,) array_like
+        MPa.
+    transmissivity : (branch, n) array_like
+        T, mm3. A branch without any passage has no law.
+    may_fit : (n,) array_like of bool
+        Loads that a fit may take.
+
+    Returns
+    -------
+    dict
+        Estimates of the constants over the branches, with the intervals of the fit alone, and the
+        ends of the range; NaN where fewer than three loads have a passage on every branch.
     """
+    pressure = np.asarray(pressure, float)
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithm = np.log(np.cbrt(12 * np.asarray(transmissivity, float)) ** 2 / 12)
-    logarithm = np.where(np.isfinite(logarithm), logarithm, np.nan)
-    slope, intercept, _ = fit_line(pressure, logarithm)
-    of_both = intercept.mapped(np.exp), slope.mapped(np.negative, falling=True)
-    return dict(zip(PERMEABILITY, of_both, strict=True))
+    passes = np.isfinite(logarithm)
+    shared = np.asarray(may_fit, bool) & passes[passes.any(axis=1)].all(axis=0)
+    lines = [fit_line(pressure[shared], of_branch[shared]) for of_branch in logarithm]
+    slope = Estimate.stack([line.slope for line in lines])
+    intercept = Estimate.stack([line.intercept for line in lines])
+    low, high = slope[slope.known].over if slope.known.any() else ([np.nan], [np.nan])
+    values = intercept.mapped(np.exp), slope.mapped(np.negative, falling=True), low[0], high[0]
+    return dict(zip((*PERMEABILITY, *PERMEABILITY_RANGE), values, strict=True))
 
 
 #: Water at 20 degrees: viscosity, MPa s, and density, N s2/mm4.

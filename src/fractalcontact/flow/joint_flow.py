@@ -48,12 +48,14 @@ def joint_flow(
     branches: xr.Dataset,
     error_budget: xr.Dataset,
     parts: Sequence[xr.Dataset],
+    may_fit: np.ndarray,
 ) -> dict[str, Any]:
     """Numbers of the stage ``flow`` by name; arrays run over its loads, branches and offsets.
 
     ``loading`` is at all offsets; ``closure``, ``branches`` and ``error_budget`` are the stages of
-    these names and ``parts`` contact states from :func:`states.sweep.joint_states`. Raises
-    `NotConverged` if a state of unloading could not be verified.
+    these names and ``parts`` contact states from :func:`states.sweep.joint_states`; ``may_fit``
+    (load,) are the loads that the law of permeability takes. Raises `NotConverged` if a
+    state of unloading could not be verified.
     """
     reported, axes = Reported.read(closure), flow_axes(loading)
     dy, dx = map(float, loading.spacing)
@@ -92,12 +94,11 @@ def joint_flow(
         "unloaded": both(composite.max() - composite),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
-    laws = [
-        permeability_law(states["nominal_pressure"].values, flows)
-        for flows in values[f"branch_transmissivity_{WAYS[0]}"]
-    ]
+    along = values[f"branch_transmissivity_{WAYS[0]}"]
+    law = permeability_law(states["nominal_pressure"].values, along, may_fit)
     for name in PERMEABILITY:
-        values |= Estimate.stack([law[name] for law in laws]).columns(name)
+        values |= law.pop(name).columns(name)
+    values |= law
     return values
 
 
@@ -256,7 +257,11 @@ def _separation_error(gap, flow, total):
 
 
 def _of_branches(composite, space, loading, branches, both, loaded):
-    """Numbers of all branches: as given on loading; on the others NaN above the largest load."""
+    """Numbers of all branches: as given on loading; on the others NaN above the largest load.
+
+    A free window that has crushed keeps the bowl of its own settlement when it is unloaded: its
+    gaps are those of a loose square, and have no number on unloading and reloading.
+    """
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
     values = {
@@ -265,8 +270,13 @@ def _of_branches(composite, space, loading, branches, both, loaded):
     }
     for over_branches in values.values():
         over_branches[1:, forces > top] = np.nan
+    values["reason"] = np.full(branches.sizes["branch"], "", object)
+    if held.any() and space.is_free:
+        values["reason"][1:] = str(branches["reload_reason"].item())
+        for name in loaded:
+            values[name][1:] = np.nan
     # A joint that has not crushed unloads and reloads along its loading curve.
-    if held.any():
+    elif held.any():
         descending, elastic = np.flatnonzero(forces <= top)[::-1], {"rtol": loading.solver.rtol}
         where = f"specimen {loading.specimen.attrs['name']}, unloading"
         states = load_steps(composite - held, space, forces[descending], elastic, where)

@@ -36,6 +36,13 @@ def scaled_joint(
     return roughness * ratio ** (-0.02 * roughness), wall_strength * ratio ** (-0.03 * roughness)
 
 
+def barton_angle(
+    pressure: Numbers, residual_angle: Numbers, roughness: Numbers, wall_strength: Numbers
+) -> Numbers:
+    """Friction angle phi_r + JRC log10(JCS / sigma) of :func:`barton_strength`, not truncated."""
+    return residual_angle + roughness * np.log10(wall_strength / pressure)
+
+
 def barton_strength(
     pressure: Numbers, residual_angle: Numbers, roughness: Numbers, wall_strength: Numbers
 ) -> Numbers:
@@ -45,6 +52,6 @@ def barton_strength(
     angle phi_r (above JCS asperities are sheared off) and `LARGEST_FRICTION_ANGLE`, both in
     degrees. The nominal pressure sigma > 0 and the JCS are in MPa; NaN gives NaN.
     """
-    angle = residual_angle + roughness * np.log10(wall_strength / pressure)
+    angle = barton_angle(pressure, residual_angle, roughness, wall_strength)
     angle = np.clip(angle, residual_angle, np.maximum(residual_angle, LARGEST_FRICTION_ANGLE))
     return pressure * np.tan(np.radians(angle))

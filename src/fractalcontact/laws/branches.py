@@ -15,7 +15,7 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import REFERENCE_PRESSURES
+from ..core.limits import LARGEST_STIFFNESS_ERROR, REFERENCE_PRESSURES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
@@ -155,9 +155,7 @@ _OF_INTERFACE = {
 #: periodic window. With it the middle of a window of twice the side lies within the error
 #: (docs/verification.md).
 EDGE_FACTOR = 2.0
-#: Largest relative error of a stiffness on reloading that is stated.
-MAX_EDGE_ERROR = 1.0
-DECIDED_BY_EDGES = "what lies beyond the edges of the window changes it by as much as itself"
+DECIDED_BY_EDGES = "what lies beyond the edges of the window changes it by more than half of itself"
 #: Reason why the stiffness on reloading is no result of a free window whose contacts crush.
 KEPT_BOWL = (
     "a free window keeps the bowl of its own settlement when it is unloaded, and would reload too "
@@ -208,7 +206,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, maps: xr.Dataset) 
         forces, own = at[at_each] * loading.area, at_reference[-1][at_each] * loading.area
         apart = _edge_error(composite, loaded[-1], forces, own, loading.solving, where)
     why = KEPT_BOWL if keeps_bowl else ""
-    if apart > MAX_EDGE_ERROR:
+    if apart > LARGEST_STIFFNESS_ERROR:
         why = DECIDED_BY_EDGES
         at_reference[1:] = np.full_like(at_reference[1:], np.nan)
     data = data.drop_vars(["further_stiffness", "further_force"], errors="ignore")

@@ -14,6 +14,8 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
+from ..core.datasets import labelled
+from ..core.labels import cf_attrs
 from ..core.limits import PRESSURE_ROUNDING, REFERENCE_PRESSURES, RESOLVED_NODES
 from ..core.reported import states_at
 from ..joint.joint import prefractal
@@ -21,7 +23,16 @@ from ..states.loading import JointLoading
 from ..states.settlement import interface_closure, interface_stiffness, window_settlement
 from ..states.state_scalars import resolved_slope
 from .scan_errors import on_sound_cells
-from .seated_laws import NO_LOAD, at_reference_pressures, curve_stiffness
+from .seated_laws import ON_SUSPECTS, at_reference_pressures, curve_stiffness
+
+#: Reason why there is no stiffness at a pressure.
+NO_LOAD = "no load below or above this pressure has a known stiffness"
+
+_AT = ("reference_pressure",)
+_TABLE = {
+    "reference_stiffness": (_AT, "MPa/mm", "tangent stiffness of the interface at a pressure"),
+    "reference_stiffness_reason": (_AT, "1", "why there is none"),
+}
 
 
 def further_pressures(pressure: np.ndarray) -> np.ndarray:
@@ -35,28 +46,54 @@ def further_pressures(pressure: np.ndarray) -> np.ndarray:
     return np.array(inside)
 
 
-def solve_reference_stiffness(
+def reference_stiffness(
     loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
-) -> None:
-    """Replace ``reference_stiffness`` of the reported curve by that of states solved there.
+) -> xr.Dataset:
+    """Stiffness of the reported curve at the reference pressures, of states solved there.
 
     Where such a state has no stiffness of its own, that of the closure curve through it and the
     loads around stands in its place. ``loading`` is at the reported offset alone, ``curves`` the
-    stage ``closure``, ``mapped`` the fields by :func:`states.states.map_states`. Raises
-    `NotConverged`.
+    stage ``closure``, ``mapped`` the fields by :func:`states.states.map_states`. The variables of
+    :data:`_TABLE`. Raises `NotConverged`.
     """
     (cells,), (offset,) = loading.cells, loading.offsets
     factor = int(curves["resolution"].min())
-    nearest = states_at(curves["offset"], offset=offset).item()
-    place = {"direction": loading.direction, "offset": nearest, "resolution": factor}
-    curve = states_at(curves, **place)
-    curve = curve.isel(normal_force=on_sound_cells(curve).values)
-    pressure = curve["nominal_pressure"].values
+    curve = states_at(curves, direction=loading.direction, offset=offset, resolution=factor)
     composite = prefractal(loading.composite(int(cells)), factor)
-    if pressure.size < 2 or np.ptp(composite) == 0:
-        return
-    stiffness, closure = (
-        curve[name].values for name in ("interface_stiffness", "interface_closure")
+    sound, resolved = on_sound_cells(curve).values, curve["resolved"].values.astype(bool)
+    pressure, stiffness = (
+        curve[name].values for name in ("nominal_pressure", "interface_stiffness")
+    )
+    interpolated, of_resolved = (
+        at_reference_pressures(pressure, np.where(of, stiffness, np.nan))
+        for of in (sound, resolved)
+    )
+    at_reference = np.full(len(REFERENCE_PRESSURES), np.nan)
+    if sound.sum() > 1 and np.ptp(composite) > 0:
+        of_sound = curve.isel(normal_force=sound)
+        at_reference = _solved_there(loading, composite, factor, of_sound, mapped)
+    by_scan = np.isnan(interpolated) & np.isfinite(of_resolved)
+    reason = np.where(by_scan, ON_SUSPECTS, NO_LOAD)
+    values = {
+        "reference_stiffness": at_reference,
+        "reference_stiffness_reason": np.where(np.isfinite(at_reference), "", reason),
+    }
+    words = cf_attrs("MPa", "nominal pressure at which the stiffness is stated")
+    pressures = {"reference_pressure": (_AT[0], np.array(REFERENCE_PRESSURES), words)}
+    return xr.Dataset(labelled(_TABLE, values), pressures)
+
+
+def _solved_there(
+    loading: JointLoading,
+    composite: np.ndarray,
+    factor: int,
+    curve: xr.Dataset,
+    mapped: xr.Dataset,
+) -> np.ndarray:
+    """Stiffness (k,) at the reference pressures, MPa/mm, from a curve of sound states."""
+    pressure, stiffness, closure = (
+        curve[name].values
+        for name in ("nominal_pressure", "interface_stiffness", "interface_closure")
     )
     wanted = further_pressures(pressure)
     if wanted.size:
@@ -71,13 +108,7 @@ def solve_reference_stiffness(
         pressure = pressure[order]
         stiffness = np.concatenate([stiffness, [k for k, _ in found]])[order]
         closure = np.concatenate([closure, [w for _, w in found]])[order]
-    stiffness = with_curve_stiffness(pressure, stiffness, closure)
-    at_reference = at_reference_pressures(pressure, stiffness)
-    curves["reference_stiffness"].loc[place] = at_reference
-    reasons = curves["reference_stiffness_reason"]
-    stated = reasons.loc[place].values
-    stated = np.where(stated == "", NO_LOAD, stated)
-    reasons.loc[place] = np.where(np.isfinite(at_reference), "", stated)
+    return at_reference_pressures(pressure, with_curve_stiffness(pressure, stiffness, closure))
 
 
 def with_curve_stiffness(

@@ -1,4 +1,4 @@
-"""Laws of the closure from a seat, as laboratories fit them, and the stiffness at set pressures.
+"""Laws of the closure from a seat, as laboratories fit them, and values at set pressures.
 
 A laboratory measures no closure from zero load: the joint is put together under a small seating
 stress, and closure counts from there (Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20
@@ -29,9 +29,8 @@ from .closure_laws import (
 )
 from .scan_errors import on_sound_cells
 
-#: Reasons why there is no stiffness at a pressure.
+#: Reason why no load can seat a joint, or a pressure has no stiffness.
 ON_SUSPECTS = "suspicious cells of the scans carry most of the force"
-NO_LOAD = "no load below or above this pressure has a known stiffness"
 
 _RANGE = "from the seating pressure on, over at most two decades"
 #: Quantities of every curve: unit, long name, dimension of an array.
@@ -46,36 +45,18 @@ _NAMES = {
     "seated_fit_max": ("MPa", "largest nominal pressure fitted"),
     "seated_k_ni_determined": ("1", "whether the seated hyperbola determines k_ni"),
     "seated_k_ni_reason": ("1", "why it does not, and what would help"),
-    "reference_stiffness": (
-        "MPa/mm",
-        "tangent stiffness of the interface at a pressure",
-        "reference_pressure",
-    ),
-    "reference_stiffness_reason": (
-        "1",
-        "why there is none",
-        "reference_pressure",
-    ),
 }
 
 
 def add_seated_laws(curves: xr.Dataset) -> None:
-    """Add both laws of the seated closure, and tangent stiffnesses, to a closure stage.
+    """Add both laws of the seated closure to a closure stage.
 
     The hyperbola is sigma = k_ni w / (1 - w/v_m); the closure from the seat is its own difference,
-    d = w(sigma) - w(seat). The other law is d = d_0 + chi ln(sigma / 1 MPa). The stiffness at a
-    reference pressure is interpolated linearly in logarithms between neighbouring states:
-    stiffnesses of rough contact are nearly powers of the pressure.
+    d = w(sigma) - w(seat). The other law is d = d_0 + chi ln(sigma / 1 MPa).
     """
-    curves.coords["reference_pressure"] = (
-        "reference_pressure",
-        np.array(REFERENCE_PRESSURES),
-        cf_attrs("MPa", "nominal pressure at which the stiffness is stated"),
-    )
     of_curve = {
         "pressure": curves["nominal_pressure"],
         "closure": curves["seated_closure"],
-        "stiffness": curves["interface_stiffness"],
         "seat": curves["seating_pressure"],
         "resolved": curves["resolved"],
         "sound": on_sound_cells(curves),
@@ -89,12 +70,11 @@ def add_seated_laws(curves: xr.Dataset) -> None:
 def _seated_laws(
     pressure: np.ndarray,
     closure: np.ndarray,
-    stiffness: np.ndarray,
     seat: float,
     resolved: np.ndarray,
     sound: np.ndarray,
 ) -> dict[str, Any]:
-    """Both laws of one seated closure curve, and its stiffness at the reference pressures.
+    """Both laws of one seated closure curve.
 
     States that are not resolved, or not ``sound``, are left out.
     """
@@ -103,10 +83,6 @@ def _seated_laws(
     logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
     by_scan = bool((resolved & ~sound).any())
     undetermined = _undetermined(hyperbola, int(fitted.sum()), seat, by_scan)
-    at_pressures, of_resolved = (
-        at_reference_pressures(pressure, np.where(of, stiffness, np.nan))
-        for of in (sound, resolved)
-    )
     return {
         "seated_k_ni": hyperbola.k_ni,
         "seated_v_m": hyperbola.w_m,
@@ -118,10 +94,6 @@ def _seated_laws(
         "seated_fit_max": pressure[fitted].max() if fitted.any() else np.nan,
         "seated_k_ni_determined": not undetermined,
         "seated_k_ni_reason": undetermined,
-        "reference_stiffness": at_pressures,
-        "reference_stiffness_reason": np.where(
-            np.isfinite(at_pressures), "", np.where(np.isfinite(of_resolved), ON_SUSPECTS, NO_LOAD)
-        ),
     }
 
 
@@ -155,7 +127,8 @@ def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarr
     """Values (k,) at :data:`core.limits.REFERENCE_PRESSURES`, linear in logarithms between states.
 
     Pressures (n,) are nominal, MPa, and ascend; values above 0, such as stiffnesses, NaN where
-    unknown. NaN outside the known states.
+    unknown. NaN outside the known states. Stiffnesses of rough contact are nearly powers of the
+    pressure.
     """
     positive = np.isfinite(values) & (values > 0)
     if positive.sum() < 2:

@@ -19,6 +19,7 @@ from ..core.estimate import Estimate, names_of
 from ..core.intervals import mean_interval, t_quantile
 from ..core.labels import cf_attrs
 from ..core.limits import (
+    ASSUMED_ANGLE_ERROR,
     BANDIS_LENGTHS,
     FRICTION_FACTORS,
     JRC_RANGE,
@@ -29,7 +30,7 @@ from ..core.per_curve import per_curve
 from ..core.settings import Friction, StrengthSettings
 from ..core.verdicts import OFF_LENGTHS
 from ..core.window import nominal_area, window_sides
-from ..joint.barton import LABORATORY_LENGTH, barton_strength, scaled_joint
+from ..joint.barton import LABORATORY_LENGTH, barton_angle, barton_strength, scaled_joint
 from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
@@ -203,16 +204,19 @@ def joint_strength(
     return result
 
 
-#: Peak strengths by every rule, whose interval holds the uncertainty of phi_b.
+#: Peak strengths by every rule, whose intervals hold the uncertainty of phi_b; by Barton's law.
 PEAKS = ("peak_strength", "peak_contact_strength", "barton_strength", "barton_scaled_strength")
+_OF_BARTON = PEAKS[2:]
 
 
 def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
     """Intervals of the :data:`PEAKS`: their own errors and those of phi_b, by squares.
 
-    :data:`core.limits.FRICTION_FACTORS` are of a strength, not of an angle.
+    :data:`core.limits.FRICTION_FACTORS` are of a strength; those of an assumed phi_b were seen
+    beside Barton's law alone. By the other rules an assumed phi_b is off by `ASSUMED_ANGLE_ERROR`.
     """
     source = material.basic_friction_angle_is
+    pressure = strength["nominal_pressure"]
     for name in PEAKS:
         if name not in strength:
             continue
@@ -222,12 +226,17 @@ def _add_friction_interval(strength: xr.Dataset, material: Friction) -> None:
             if f"{name}_error" in strength:
                 # A scan may have no other windows and readings: then the solver's error is left.
                 own = own.fillna(strength[f"{name}_error"])
-            half = np.hypot(own, (factor - 1) * value)
+            of_angle = (factor - 1) * value
+            if source == "assumed" and name not in _OF_BARTON:
+                sign = -1 if end == "low" else 1
+                angle = np.degrees(np.arctan(value / pressure)) + sign * ASSUMED_ANGLE_ERROR
+                of_angle = value.copy(data=shear_strength(pressure, angle)[0]) - value
+            half = np.hypot(own, of_angle)
             title = value.attrs["long_name"]
             words = f"{end} end of {title}: own error at 95 %, phi_b {source}"
             limit = value + half if end == "high" else (value - half).clip(0)
             # No rule gives more than that angle.
-            steepest = np.tan(np.radians(LARGEST_FRICTION_ANGLE)) * strength["nominal_pressure"]
+            steepest = np.tan(np.radians(LARGEST_FRICTION_ANGLE)) * pressure
             limit = xr.where(limit > steepest, np.maximum(steepest, value), limit)
             limit = limit.transpose(*value.dims).drop_vars(set(limit.coords) - set(value.coords))
             strength[f"{name}_{end}"] = limit.assign_attrs(cf_attrs("MPa", words))
@@ -258,13 +267,17 @@ _QUANTITIES = {
     "residual_strength": ("MPa", "mean shear strength beyond half of the largest offset", *_LOAD),
     "residual_n": ("1", "intervals beyond half of the largest offset", *_LOAD),
     "barton_strength": ("MPa", "peak strength by Barton's law", *_LOAD),
+    "barton_strength_valid": ("1", "the strength by Barton's law is a result", *_LOAD),
+    "barton_strength_reason": ("1", "why it is only a lower bound", *_LOAD),
     "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law", *_LOAD),
     "scaled_roughness": ("1", "JRC_n for the window's length; missing above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n", *_LOAD),
     "barton_scaled_reason": ("1", "why there is no strength by JRC_n and JCS_n"),
+    "barton_scaled_strength_valid": ("1", "the strength by JRC_n and JCS_n is a result", *_LOAD),
+    "barton_scaled_strength_reason": ("1", "why there is none, or only a lower bound", *_LOAD),
     "block_strength": ("MPa", "peak strength of a block of a length, by rule", *_BLOCK),
-    "block_reason": ("1", "why there is none", "rule", "block_length"),
+    "block_reason": ("1", "why there is none", *_BLOCK),
 }
 
 #: Quantities that rest on solved states, and have a solver error bound for that.
@@ -286,6 +299,10 @@ _LIKE_LABORATORY = 0.01
 
 #: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
+BARTON_TRUNCATED = (
+    f"only a lower bound: phi_b + JRC log10(JCS/sigma) exceeds {LARGEST_FRICTION_ANGLE:g} degrees, "
+    "where Barton's law is cut off"
+)
 HALF_TOUCHES = "half of the window touches, so that the faces no longer ride on asperities"
 
 #: Quantities of one direction: unit, long name, dimensions.
@@ -410,13 +427,29 @@ def _by_barton(
     """
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
     scaled_jrc, scaled_wall, reason = _scaled(jrc, wall, side)
+    own, scaled = (
+        _truncated_by_barton(pressure, angle, *joint)
+        for joint in ((float(jrc.value), wall), (scaled_jrc, scaled_wall))
+    )
     return {
         "barton_strength": _over_pressures(jrc, wall, angle, pressure),
+        "barton_strength_valid": own == "",
+        "barton_strength_reason": own,
         "scaled_roughness": scaled_jrc,
         "scaled_wall_strength": scaled_wall,
         "barton_scaled_strength": _by_bandis(jrc, material, side, pressure),
         "barton_scaled_reason": reason,
+        "barton_scaled_strength_valid": scaled == "",
+        "barton_scaled_strength_reason": np.full(pressure.shape, reason) if reason else scaled,
     }
+
+
+def _truncated_by_barton(
+    pressure: np.ndarray, angle: float, roughness: float, wall: float
+) -> np.ndarray:
+    """Reasons (load,) why a strength by Barton's law is no result; empty where it is one."""
+    is_cut = barton_angle(pressure, angle, roughness, wall) > LARGEST_FRICTION_ANGLE
+    return np.where(is_cut, BARTON_TRUNCATED, "")
 
 
 def _over_pressures(jrc: Estimate, wall: float, angle: float, pressure: np.ndarray) -> Estimate:
@@ -458,25 +491,28 @@ def _of_blocks(
 ) -> dict[str, np.ndarray]:
     """Peak strengths (rule, block_length, load) of blocks of stated lengths, with reasons."""
     material, lengths = settings.material, settings.block_lengths
+    angle, wall = material.basic_friction_angle, material.joint_wall_strength
     strengths = np.full((len(RULES), len(lengths), len(pressure)), np.nan)
-    reasons = np.full((len(RULES), len(lengths)), "", object)
+    reasons = np.full(strengths.shape, OF_WINDOW, object)
     for i, length in enumerate(lengths):
+        scaled_jrc, scaled_wall, unscalable = _scaled(jrc, wall, length)
+        like_laboratory = np.isclose(length, LABORATORY_LENGTH, rtol=_LIKE_LABORATORY)
         by_rule = {
             "Barton": (
-                _over_pressures(
-                    jrc, material.joint_wall_strength, material.basic_friction_angle, pressure
-                ).value,
-                "" if np.isclose(length, LABORATORY_LENGTH, rtol=_LIKE_LABORATORY) else UNSCALED,
+                _over_pressures(jrc, wall, angle, pressure).value,
+                "" if like_laboratory else UNSCALED,
+                _truncated_by_barton(pressure, angle, float(jrc.value), wall),
             ),
             "Barton and Bandis": (
                 _by_bandis(jrc, material, length, pressure).value,
-                _scaled(jrc, material.joint_wall_strength, length)[2],
+                unscalable,
+                _truncated_by_barton(pressure, angle, scaled_jrc, scaled_wall),
             ),
         }
-        for row, rule in enumerate(RULES):
-            strength, reason = by_rule.get(rule, (np.full(len(pressure), np.nan), OF_WINDOW))
-            strengths[row, i] = np.nan if reason else strength
-            reasons[row, i] = reason
+        for rule, (strength, no_law, truncated) in by_rule.items():
+            row = RULES.index(rule)
+            reasons[row, i] = no_law or truncated
+            strengths[row, i] = np.where(reasons[row, i] == "", strength, np.nan)
     return {"block_strength": strengths, "block_reason": reasons.astype(str)}
 
 

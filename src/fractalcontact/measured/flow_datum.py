@@ -16,6 +16,7 @@ from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.settings import MeasuredTest
 from ..flow.cubic_law import flow_of, grid_error
+from ..flow.network import Flow
 from .closure import COMPUTED, FITTED, PREDICTED, largest_of
 from .computed import Joint
 from .curve import Curve, ratio
@@ -53,17 +54,22 @@ def compare_flow(
     setting = next((test for test in tests if np.isfinite(test.datum_pressure)), None)
     if setting is None:
         return [{**row, **_without(len(row["at"]))} for row in rows]
-    shift = _fitted_shift(joint, setting, readings[tests.index(setting)], flow)
+    place = tests.index(setting)
+    wanted = _reading(setting, readings[place])
+    passing = [
+        _Passing(joint, test, largest_of(test, curve), row["at"], flow)
+        for test, curve, row in zip(tests, readings, rows, strict=True)
+    ]
+    shift = _fitted_shift(passing[place], setting, wanted)
     found = []
-    for test, curve, row in zip(tests, readings, rows, strict=True):
-        passing = _Passing(joint, test, largest_of(test, curve), row["at"], flow)
-        calibrated = passing.estimate(shift)
+    for test, of_test, row in zip(tests, passing, rows, strict=True):
+        calibrated = of_test.estimate(shift)
         is_fitted = test is setting
         found.append(
             {
                 **row,
                 "datum": shift if is_fitted else NO_ESTIMATE,
-                "datum_reason": shift.reason if is_fitted else "",
+                "datum_reason": "" if is_fitted else f"the test '{setting.label}' sets the shift",
                 "datum_pressure": test.datum_pressure,
                 "status": FITTED if is_fitted and len(row["at"]) == 1 else PREDICTED,
                 "calibrated": calibrated,
@@ -80,7 +86,7 @@ def _without(points: int) -> dict[str, Any]:
     return {
         "datum": NO_ESTIMATE,
         "datum_pressure": np.nan,
-        "datum_reason": "",
+        "datum_reason": "no flow test states a 'datum_pressure'",
         "status": COMPUTED,
         "calibrated": nothing,
         "calibrated_ratio": nothing,
@@ -88,49 +94,67 @@ def _without(points: int) -> dict[str, Any]:
 
 
 class _Passing:
-    """T of a joint at some pressures on the branch of a test, over a shift of its faces."""
+    """T of a joint on the branch of a test, over a shift of its faces.
+
+    At some pressures, MPa, and at that of the reading that sets the shift: one path of loads.
+    """
 
     def __init__(self, joint, test, largest, pressures, flow):
         self.axis = str(flow.attrs[f"flow_axis_{test.way}"])
-        self.gaps = joint.gaps_on_branch(test, largest, np.asarray(pressures, float))
         self.spacing = tuple(float(step) for step in joint.loading.spacing * joint.factor)
+        self.pressures = np.asarray(pressures, float)
+        every = np.union1d(self.pressures, test.datum_pressure)
+        every = every[np.isfinite(every)]
+        self._gaps = dict(
+            zip(every.tolist(), joint.gaps_on_branch(test, largest, every), strict=True)
+        )
 
     def at(self, shift: float) -> np.ndarray:
         """T (n,), mm3, of faces farther apart by a shift, mm."""
-        return np.array([self._flow(gap, shift).transmissivity for gap in self.gaps])
+        return np.array([self.flow(p, shift).transmissivity for p in self.pressures.tolist()])
 
     def estimate(self, shift: Estimate) -> Estimate:
         """T (n,) with the interval of the shift."""
         value, low, high = (self.at(float(end)) for end in shift.ends)
         return Estimate(value, low, high)
 
-    def grid_error(self, shift: float) -> float:
-        """Relative grid error of the first T."""
-        gap = np.maximum(self.gaps[0] + shift, 0.0)
-        flow = self._flow(self.gaps[0], shift)
-        return grid_error(gap, self.spacing, self.axis, flow) / max(flow.transmissivity, _CLOSED)
+    def grid_error(self, pressure: float, shift: float) -> float:
+        """Relative grid error of T at a pressure."""
+        flow = self.flow(pressure, shift)
+        off = grid_error(self.gap(pressure, shift), self.spacing, self.axis, flow)
+        return off / max(flow.transmissivity, _CLOSED)
 
-    def _flow(self, gap, shift):
-        return flow_of(np.maximum(gap + shift, 0.0), self.spacing, self.axis)
+    def gap(self, pressure: float, shift: float = 0.0) -> np.ndarray:
+        """Gap (ny, nx) at a pressure of faces farther apart by a shift, mm."""
+        return np.maximum(self._gaps[pressure] + shift, 0.0)
+
+    def flow(self, pressure: float, shift: float) -> Flow:
+        """Flow through that gap."""
+        return flow_of(self.gap(pressure, shift), self.spacing, self.axis)
 
 
-def _fitted_shift(joint: Joint, test: MeasuredTest, readings: Curve, flow: xr.Dataset) -> Estimate:
-    """Shift, mm, at which T is that of a reading; its interval is that of reading and grid."""
+def _reading(test: MeasuredTest, readings: Curve) -> Estimate:
+    """T read at the pressure that sets the shift, mm3; `InputError` if the test has none there."""
     pressure = test.datum_pressure
-    measured = readings.at(np.array([pressure]))
-    wanted = float(measured.value[0])
-    if not wanted > 0:
+    wanted = readings.at(np.array([pressure]))[0]
+    if not wanted.value > 0:
         ends = f"{readings.x[0]:.3g} to {readings.x[-1]:.3g} MPa"
         raise InputError(
             f"{test.file}: no T is read at 'datum_pressure: {pressure:g} MPa'; write a pressure of "
             f"the test ({ends}) at which water passes"
         )
-    passing = _Passing(joint, test, largest_of(test, readings), [pressure], flow)
+    return wanted
+
+
+def _fitted_shift(passing: _Passing, test: MeasuredTest, wanted: Estimate) -> Estimate:
+    """Shift, mm, at which T is that of a reading; its interval is that of reading and grid."""
+    pressure = test.datum_pressure
 
     def apart(shift: float) -> float:
-        return float(np.log(max(passing.at(shift)[0], _CLOSED) / wanted))
+        found = passing.flow(pressure, shift).transmissivity
+        return float(np.log(max(found, _CLOSED) / wanted.value))
 
-    low, high = -float(passing.gaps[0].max()), MAX_SHIFT
+    low, high = -float(passing.gap(pressure).max()), MAX_SHIFT
     if apart(high) < 0:
         raise InputError(
             f"{test.file}: T at {pressure:g} MPa is larger than that of faces {MAX_SHIFT:g} mm "
@@ -138,6 +162,6 @@ def _fitted_shift(joint: Joint, test: MeasuredTest, readings: Curve, flow: xr.Da
         )
     shift = float(optimize.brentq(apart, low, high, xtol=TOLERANCE))
     steepness = (apart(shift + _STEP) - apart(shift - _STEP)) / (2 * _STEP)
-    of_reading = abs(np.log(float(measured.high[0]) / wanted))
-    half = np.hypot(of_reading, passing.grid_error(shift)) / max(steepness, _CLOSED)
+    of_reading = abs(np.log(wanted.high / wanted.value))
+    half = np.hypot(of_reading, passing.grid_error(pressure, shift)) / max(steepness, _CLOSED)
     return Estimate(shift, shift - half, shift + half)

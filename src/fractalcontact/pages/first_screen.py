@@ -14,7 +14,7 @@ from ..core.labels import BOUNDARIES, OPPOSITE, printable
 from ..core.limits import ALL_CRUSH, JRC_SAMPLING, PRESSURE_ROUNDING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
-from ..report.published import Number, Row, read, read_at, row_of
+from ..report.published import Number, Row, is_of_law, read, read_at, row_of
 from .files import CARD
 from .lights import trust_in
 from .summary import STRENGTH_RULES, lengths_of
@@ -200,9 +200,8 @@ class _Block:
 
     def jrc(self) -> Fact:
         """JRC at the step of its law, in the reported direction."""
-        law = {"sampling": JRC_SAMPLING, "direction": self.subject.direction}
         for number in read(row_of("jrc"), self.subject):
-            if law.items() <= number.at.items():
+            if number.at and is_of_law(number.at, self.subject.direction):
                 step = with_unit(number.at["step"], "mm")
                 by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
                 by = f"whole face, brackets: 95 % of its profiles; {by}"

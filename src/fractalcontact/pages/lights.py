@@ -212,6 +212,6 @@ def trust_in(subject: Subject, synthetic: bool = False) -> Trust:
     if synthetic or subject.direction == "none" or not (is_stated and is_assumed):
         return trust
     low, high = FRICTION_FACTORS["assumed"]
-    tests = f"tests had {short(low)} to {short(high)} times the strength"
+    tests = f"tests had {short(low)} to {short(high)} times the strength by Barton's law"
     measure = f"measure phi_b on flat faces (assumed: {tests})"
     return trust._replace(help="; ".join(filter(None, (measure, trust.help))))

@@ -6,6 +6,7 @@ and in base64.
 """
 
 import base64
+import math
 import zlib
 from dataclasses import dataclass
 from typing import Any
@@ -103,7 +104,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 
     ``numbers`` is the text of all arrays; ``arrays`` has the stage, variable, units, meaning,
     dimensions, shape and start of each in it. Arrays called ``total/ROW`` are errors of all
-    sources; ``undetermined/ROW``, for the rows ``of_joint`` ``undetermined/by_scan`` and for those
+    sources, of which ``most`` has the largest, as a fraction of the number, that determines a row;
+    ``undetermined/ROW``, for the rows ``of_joint`` ``undetermined/by_scan`` and for those
     ``of_touch`` ``undetermined/at_touch`` say where the pages call a number undetermined.
     ``domains`` are texts by resolution, direction and offset.
     """
@@ -132,6 +134,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         "rows": [row.source for row in rows],
         "of_joint": [row.source for row in rows if row.by_scan],
         "of_touch": [row.source for row in rows if row.from_touch],
+        "most": {row.source: row.most for row in rows if math.isfinite(row.most)},
         "reasons": _reasons(stages),
         "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
@@ -148,7 +151,9 @@ def _of_all_states(subject: Subject) -> xr.Dataset:
     reported, closure, flow = subject.reported, subject["closure"], subject["flow"]
     rows = [row for row in shown_in("explorer") if row.stage == "flow"]
     reasons = {row.reason.partition("/")[2] for row in rows if row.reason}
-    flow = flow[[*(row.variable for row in rows), *sorted(reasons)]].expand_dims(
+    # With the ends of their intervals, as the page of the specimen has them.
+    shown = [of for row in rows for of in names_of(row.variable) if of in flow]
+    flow = flow[[*shown, *sorted(reasons)]].expand_dims(
         direction=[reported.direction],
         offset=[reported.offset],
         resolution=[reported.resolution],

@@ -351,9 +351,12 @@ def _specimen_values(
 
 
 def _warnings(subject: Subject) -> list[str]:
-    """Warnings of the check of scans that no light repeats."""
+    """Warnings of the check of scans that no light repeats, and a doubt about its twins."""
     of_light = str(subject["quality"].attrs.get("warning", ""))
     warnings = warnings_of_specimen(subject["specimens"], subject["quality"])
+    ensemble = subject.stages.get("ensemble", xr.Dataset())
+    if doubt := str(ensemble.attrs.get("doubt", "")):
+        warnings = [*warnings, f"first touch and dilatancy of its twins mean little: {doubt}"]
     return [printable(warning, _LONGEST_WARNING) for warning in warnings if warning != of_light]
 
 

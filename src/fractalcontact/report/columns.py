@@ -1,18 +1,23 @@
 """Columns of a table that a published number fills: one rule for their names."""
 
+import math
 import re
 from typing import Any
 
-from ..core.estimate import column_of
+from ..core.estimate import Estimate, column_of
 from .published import Number, Row
 
 
 def columns_of(row: Row, number: Number) -> dict[str, Any]:
     """Columns of a number: NAME, NAME_low, NAME_high, NAME_error_surface and so on, the unit last.
 
+    A number that is no result, such as a strength that is only a bound, is empty with its ends.
     NAME_error alone is the solver error bound, as in the atlas and the tables of figures.
     """
     name = _column(row, number)
+    if number.missing:
+        nan = math.nan
+        number = number._replace(estimate=Estimate(), error=nan, population=nan, hardest=nan)
     fields = {"": number.value}
     if row.uncertain:
         fields |= {"low": number.estimate.low, "high": number.estimate.high}

@@ -13,6 +13,7 @@ import yaml
 
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, IN_PLANE, SIZE, Estimate, names_of
+from ..core.limits import JRC_SAMPLING
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
 from ..core.verdicts import TOO_WIDE
@@ -39,6 +40,8 @@ UNITS_AT = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "
 _NOT_SOLVED = "not solved under this load"
 #: Reason why a number with a narrow interval is undetermined.
 BY_SCAN = "suspicious cells of the scan carry most of the force"
+#: Reason why a number is undetermined whose error passes the largest that its row allows.
+TOO_UNCERTAIN = "its error is larger than half of it"
 #: Reason of what counts from first touch.
 BY_TOUCH = "first touch lies on suspicious cells of the scan"
 
@@ -98,6 +101,7 @@ class Row:
     budget: str = ""
     hardest: str = ""
     error: str = ""
+    most: float = math.nan
     within: tuple[float, float] = (0.0, math.inf)
     dimension: bool = False
     range: tuple[str, ...] = ()
@@ -226,6 +230,11 @@ def read(row: Row, subject: Subject) -> list[Number]:
     return list(_numbers(row, subject, array))
 
 
+def is_of_law(at: Mapping[str, Any], direction: str) -> bool:
+    """True of the labels of the JRC that Barton's law takes: its step, along a direction."""
+    return bool(at["sampling"] == JRC_SAMPLING and at["direction"] == direction)
+
+
 def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:
     """Number of a quantity under a load; the first of a quantity that is not over all loads."""
     number = subject.reported.reference if load is None else load
@@ -310,10 +319,13 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
         if at_touch and not by_scan[place]:
             why = why or BY_TOUCH
         value, low, high = (end[place] for end in ends)
+        too_uncertain = bool(error[place] > row.most * abs(value))
+        if too_uncertain and valid and not by_scan[place]:
+            why = why or TOO_UNCERTAIN
         scale = DIMENSION if row.dimension else SIZE
         estimate = Estimate(value, low, high, reason=why, scale=scale)
         missing = _missing(row, estimate, valid, why)
-        determined = not (by_scan[place] or at_touch)
+        determined = not (by_scan[place] or at_touch or too_uncertain)
         if row.range or row.dimension:
             determined &= bool(estimate.known and valid and estimate.determined)
         yield Number(

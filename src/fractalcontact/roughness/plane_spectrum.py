@@ -34,12 +34,15 @@ class PlaneSpectrum:
     ``number`` (k,) are the wave numbers of the rings, 1/mm, ascending: inverse wavelengths.
     ``density`` (k, SECTORS) is in mm4, from direction x over y to -x: independent heights of
     variance v have v dx dy. ``slope`` is the exponent of the density of waves longer than those of
-    the first ring.
+    the first ring. ``longest`` is the measured power of the two longest rings over that of the
+    density, ``longest_error`` the standard deviation of 1 that so few waves have by chance.
     """
 
     number: np.ndarray
     density: np.ndarray
     slope: float
+    longest: float = 1.0
+    longest_error: float = 0.0
 
     def at(self, number_y: np.ndarray, number_x: np.ndarray) -> np.ndarray:
         """Density at wave numbers, mm4; zero for the mean height.
@@ -103,7 +106,10 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     covariance = scipy.fft.ifft2(padded.gain * spectrum.at(*padded.numbers), workers=1).real
     expected = scipy.fft.fft2(covariance * of_taper, workers=1).real[::2, ::2]
     ratio = pooled / bins.means(expected / np.sum(taper**2))[0]
-    return PlaneSpectrum(spectrum.number, spectrum.density * ratio[:, np.newaxis], slope)
+    waves = bins.in_ring[:2] / _TAPERED
+    longest = float(np.average(rings[:2] / pooled[:2], weights=waves))
+    density = spectrum.density * ratio[:, np.newaxis]
+    return PlaneSpectrum(spectrum.number, density, slope, longest, float(waves.sum() ** -0.5))
 
 
 def amplitude_error(heights: np.ndarray, spacing: tuple[float, float]) -> float:

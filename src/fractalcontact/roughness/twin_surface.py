@@ -13,11 +13,15 @@ import scipy.fft
 from scipy import special
 
 from ..core.mean_plane import without_mean_plane
+from ..core.text import short
 from ..surface.synthesis import filtered_noise, grid_side
 from .plane_spectrum import plane_spectrum
 
 #: Least departure, standard deviations, of a moment from that of Gaussian heights beyond chance.
 _BEYOND_CHANCE = 3.0
+#: Largest excess kurtosis of the slopes of a surface that is like its twins, whose slopes have some
+#: 0: steps and spikes, which no spectrum holds, raise it (21 of a granite face).
+MAX_SLOPE_KURTOSIS = 3.0
 #: Number of Hermite polynomials in the expansion of a distribution, and its normal deviates.
 _POLYNOMIALS, _DEVIATES = 16, np.linspace(-6, 6, 2001)
 
@@ -73,6 +77,26 @@ def twin_surface(
     # Cutting negative parts off the density raises the variance above one.
     normal /= scipy.fft.irfft2(normal, s=(side, side), workers=1)[0, 0]
     return TwinSurface(shape, normal, np.sqrt(variance) * ordered)
+
+
+def twin_doubt(heights: np.ndarray, spacing: tuple[float, float]) -> str:
+    """Reason why extremes of the twins of a surface mean little, or "".
+
+    First touch and dilatancy hang on the few highest nodes. Parameters and errors are those of
+    :func:`twin_surface`.
+    """
+    z = without_mean_plane(np.asarray(heights, float))
+    kurtoses = []
+    for axis in (0, 1):
+        slopes = np.diff(z, axis=axis)
+        kurtoses.append(np.mean(slopes**4) / np.mean(slopes**2) ** 2 - 3)
+    if max(kurtoses) > MAX_SLOPE_KURTOSIS:
+        size = short(max(kurtoses))
+        return f"no twin has its steps or spikes (excess kurtosis of the slopes {size})"
+    spectrum = plane_spectrum(heights, spacing)
+    if spectrum.longest > 1 + _BEYOND_CHANCE * spectrum.longest_error:
+        return f"its longest waves have {short(spectrum.longest)} times the power of its twins"
+    return ""
 
 
 def _matters(z: np.ndarray, correlation: np.ndarray) -> bool:

@@ -33,7 +33,7 @@ from ..laws.area import area_laws, joint_statistics
 from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..laws.contact_strength import SAMPLED_BY
-from ..laws.reference_states import solve_reference_stiffness
+from ..laws.reference_states import reference_stiffness
 from ..laws.scan_errors import load_warning
 from ..laws.slid_variants import slid_variants
 from ..registration.registration_scatter import stored_motions
@@ -139,7 +139,8 @@ def state_stages(
     if joint.slides:
         variants = slid_variants(joint, reported.force)
         stages["dilatancy"] = stages["dilatancy"].assign(variants)
-    solve_reference_stiffness(loading, stages["closure"], maps)
+    stated = reference_stiffness(loading, stages["closure"], maps)
+    stages["closure"] = stages["closure"].assign(stated)
     budget = reported_budget(loading, stages, reported, ensemble)
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
     return stages | {

@@ -11,9 +11,10 @@ from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import JointSettings, Solver
 from ..core.window import nominal_area
-from ..flow.aperture import PERMEABILITY, QUANTILES
+from ..flow.aperture import PERMEABILITY, PERMEABILITY_RANGE, QUANTILES
 from ..flow.cubic_law import WAYS
 from ..flow.joint_flow import SHIFT, flow_axes, joint_flow
+from ..laws.scan_errors import on_sound_cells
 from ..states.loading import JointLoading
 from ..states.states import with_pressure
 
@@ -75,6 +76,8 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         for name, of_law in PERMEABILITY.items()
         for row, words in rows_of(name, *of_law).items()
     },
+    **{name: ((), *words) for name, words in PERMEABILITY_RANGE.items()},
+    "branch_reason": ("branch", "1", "why a branch has neither gaps nor flow"),
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
     "crushed_fraction": (_LOADS, "1", "volume of crushed rock over that of the gap left"),
     "shifted_ratio": (
@@ -117,7 +120,8 @@ def flow_stages(
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     axes = flow_axes(loading)
-    values = joint_flow(loading, closure, branches, error_budget, parts)
+    may_fit = on_sound_cells(reported.states(closure)).values
+    values = joint_flow(loading, closure, branches, error_budget, parts, may_fit)
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],

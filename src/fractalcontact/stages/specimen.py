@@ -42,7 +42,7 @@ def specimen_of_files(
         return prepare_specimen(files[0], None, options, settings, name)
     lower, upper, given = faces_in_mm(files[0], files[1], options)
     faces = grid_pair(lower, upper, given.registration, given.mirror_upper)
-    specimen = _of_faces(*faces, settings, name)
+    specimen = specimen_of_faces(*faces, settings, name)
     return with_other_readings(specimen, faces, (lower, upper), given, settings)
 
 
@@ -71,10 +71,13 @@ def prepare_specimen(
     InputError
         If a file cannot be read, or the window finds no place.
     """
-    return _of_faces(*read_faces(lower, upper, options), settings, name)
+    return specimen_of_faces(*read_faces(lower, upper, options), settings, name)
 
 
-def _of_faces(lower, upper, settings, name) -> xr.Dataset:
+def specimen_of_faces(
+    lower: xr.DataArray, upper: xr.DataArray | None, settings: SpecimenSettings, name: str
+) -> xr.Dataset:
+    """Specimen of :func:`prepare_specimen` from faces of :func:`scan.read.read_faces`."""
     specimen = make_specimen(lower, upper, name=name, **window_arguments(settings))
     if upper is not None and (motions := scattered_motions(lower, upper)):
         specimen = specimen.assign(motion_variables(motions))

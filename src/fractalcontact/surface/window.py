@@ -14,7 +14,7 @@ from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
 from ..core.limits import SMALLEST_SIDE
 from ..core.text import percent
-from ..core.window import spacing_of
+from ..core.window import spacing_of, window_fraction
 
 #: Fraction of a cell within which a side given in mm holds a whole number of cells.
 _ROUNDING = 1e-6
@@ -126,7 +126,7 @@ def _larger(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
 
 def _share(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
     """Fraction of the measured cells of the face that a window takes, in words."""
-    return percent(shape[0] * shape[1] / int(specimen["valid"].sum()))
+    return percent(window_fraction(specimen, shape))
 
 
 def _stated(specimen, request) -> _Wanted:

@@ -2,6 +2,8 @@
 
 Friction and dilation are those under the reference load. The codes take one number each, and the
 strength of the joint is no straight line over the pressure: the tables have what it is elsewhere.
+
+Sources: docs/other_codes.md, "Constants for the codes of Itasca".
 """
 
 import math
@@ -9,14 +11,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.limits import JRC_RANGE, JRC_SAMPLING
+from ...core.limits import JRC_RANGE
 from ...core.text import exact, short
-from ..entries import reference_of, row_at
+from ..entries import jrc_of_law, reference_of, row_at
 from .constants import TO_SI, Constants, head_of, in_words
 
-#: Rule for the shear stiffness, which no contact state has.
+#: Rule for the shear stiffness, which no contact state has. Public code quotes the displacement of
+#: Barton, Bandis and Bakhtar (1985), L in m; neither that paper nor the one of 1990 was read.
 _SHEAR_RULE = (
-    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis 1990"
+    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis 1990, "
+    "as quoted, not read in the source"
 )
 
 
@@ -30,6 +34,8 @@ class Names:
     friction: str
     dilation: str
     cohesion: str
+    table: str = "table"
+    """Command of a table, which later versions know by its name."""
 
 
 def constants_of(card: Mapping[str, Any], names: Names) -> Constants:
@@ -63,18 +69,10 @@ def constants_of(card: Mapping[str, Any], names: Names) -> Constants:
 
 def _add_shear_stiffness(card, names, constants, strength):
     """Shear stiffness by an empirical rule, where the card has what the rule needs."""
-    jrc = next(
-        (
-            row["value"]
-            for row in card["entries"]["jrc"].get("values", ())
-            if row["at"]["sampling"] == JRC_SAMPLING
-            and row["at"]["direction"] == card["direction"]
-            and JRC_RANGE[0] < row.get("value", -1.0) <= JRC_RANGE[1]
-        ),
-        None,
-    )
-    if jrc is None or "value" not in strength:
-        lacks = "a JRC of Barton's range" if jrc is None else "a peak strength"
+    jrc = jrc_of_law(card).get("value", -1.0)
+    in_range = JRC_RANGE[0] < jrc <= JRC_RANGE[1]
+    if not in_range or "value" not in strength:
+        lacks = "a peak strength" if in_range else "a JRC of Barton's range"
         constants.left_out[names.shear] = f"not computed; the empirical rule needs {lacks}"
         return
     window = card["geometry"]
@@ -121,5 +119,5 @@ def text_of(card: Mapping[str, Any], names: Names, before: str, command: str) ->
         unit = "Pa/m" if name == "normal_stiffness" else "degrees"
         lines.append(f"; {name} ({unit}) over the nominal pressure (Pa), for a FISH function")
         points = " ".join(f"({exact(x)},{exact(y)})" for x, y in pairs)
-        lines.append(f"table '{card['name']}_{name}' add {points}")
+        lines.append(f"{names.table} '{card['name']}_{name}' add {points}")
     return "\n".join(lines) + "\n"

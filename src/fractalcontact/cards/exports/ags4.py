@@ -9,9 +9,9 @@ import datetime
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ...core.limits import JRC_RANGE, JRC_SAMPLING
+from ...core.limits import JRC_RANGE
 from ...core.text import exact, number
-from ..entries import reference_of, row_at
+from ..entries import jrc_of_law, reference_of, row_at
 from .constants import contact_of, in_words
 
 ENDING = "ags"
@@ -21,18 +21,14 @@ _EDITION = "4.1.1"
 def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]:
     """Headings of DISC with unit, type and text."""
     entries, name = card["entries"], str(card["name"])
-    jrc = [
-        row
-        for row in entries["jrc"].get("values", ())
-        if row["at"]["sampling"] == JRC_SAMPLING
-        and row["at"]["direction"] == card["direction"]
-        and JRC_RANGE[0] <= row.get("value", -1) <= JRC_RANGE[1]
-    ]
+    jrc = jrc_of_law(card)
+    if not JRC_RANGE[0] <= jrc.get("value", -1) <= JRC_RANGE[1]:
+        jrc = {}
     gap, wall = row_at(entries["mean_gap"], reference_of(card)), entries["joint_wall_strength"]
     remarks = [f"contact {contact_of(card)}", f"trust {card['trust']['word']}"]
     if jrc:
         remarks.append(
-            f"JRC of Tse and Cruden 1979, step {exact(jrc[0]['at']['step'])} mm, "
+            f"JRC of Tse and Cruden 1979, step {exact(jrc['at']['step'])} mm, "
             f"towards {card['direction']}"
         )
     if "value" in gap:
@@ -46,7 +42,7 @@ def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]
         "DISC_BASE": ("m", "2DP", ""),
         "FRAC_SET": ("", "X", ""),
         "DISC_NUMB": ("", "X", "1"),
-        "DISC_JRC": ("", "0DP", number(jrc[0]["value"], 0) if jrc else ""),
+        "DISC_JRC": ("", "0DP", number(jrc["value"], 0) if jrc else ""),
         "DISC_APT": ("mm", "XN", exact(gap["value"], 3) if "value" in gap else ""),
         "DISC_STR": ("MPa", "0DP", number(wall["value"], 0) if "value" in wall else ""),
         "DISC_REM": ("", "X", "; ".join(remarks)),

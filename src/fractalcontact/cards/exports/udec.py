@@ -1,6 +1,7 @@
 """Constants for UDEC: properties of a joint material by their classical names.
 
-The line is that of versions up to 6. Version 7 has the names of 3DEC (`three_dec`).
+The line is that of versions up to 6. Version 7 has the names of 3DEC (`three_dec`), and tables by
+name: here they are comments.
 """
 
 from collections.abc import Mapping
@@ -9,7 +10,7 @@ from typing import Any
 from . import _itasca
 
 ENDING = "dat"
-NAMES = _itasca.Names("UDEC", "jkn", "jks", "jfric", "jdil", "jcoh")
+NAMES = _itasca.Names("UDEC", "jkn", "jks", "jfric", "jdil", "jcoh", "; table")
 
 
 def text_of(card: Mapping[str, Any]) -> str:

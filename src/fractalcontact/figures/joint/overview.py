@@ -10,7 +10,7 @@ from xarray import DataTree
 from ...core.datasets import labelled_dataset
 from ...core.subject import Subject
 from ...core.text import length_unit, percent, pressure_label
-from ...core.window import spacing_of, window_sides, window_slices
+from ...core.window import spacing_of, window_fraction, window_sides, window_slices
 from .. import kit
 
 TITLE = "The joint: window on the scan, gap, place of the load, and faces along a line"
@@ -40,8 +40,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     top, bottom = figure.subfigures(2, 1, height_ratios=[1.5, 1])  # type: ignore[misc]  # an array
     relief, of_gap, of_load = top.subplots(1, 3, width_ratios=[1.15, 1, 1])
     height = float(specimen["y"][line] - specimen["y"][0])
-    cells = (rows.stop - rows.start) * (columns.stop - columns.start)
-    share = cells / int(specimen["valid"].sum())
+    share = window_fraction(specimen)
     _draw_relief(top, relief, specimen, height)
     sides = window_sides(specimen)
     upper_end = float(np.nanquantile(gap, 0.99)) or 1.0

@@ -12,7 +12,9 @@ from ...core.estimate import Estimate
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import compact, pressure_label
+from ...core.verdicts import UNDETERMINED
 from ...core.window import window_sides
+from ...report.published import Number, read, row_of
 from .. import kit
 from ..paper._closure_laws import hyperbola, offset_words
 from ._permanent_set import draw_permanent_set
@@ -67,15 +69,14 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         kit.say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
     a.axes.set_xlabel("closure $d$ from the seat (mm)")
     a.axes.set_ylabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
-    why = str(curve["seated_k_ni_reason"].item())
+    why = str(subject["error_budget"]["k_ni_reason"].item())
     remarks: list[Any] = [kit.heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
     kit.legends_below(top, [*a.entries, *remarks], b.entries)
     kit.headline(figure, subject.label, kit.place(subject.direction))
     sides = window_sides(subject["specimens"])
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = kit.table_of(a, b, *below)
-    total = subject["error_budget"]["reference_stiffness_total"]
-    words = {"tests": kit.test_words(subject, "closure"), **_words(subject, seat, reloading, total)}
+    words = {"tests": kit.test_words(subject, "closure"), **_words(subject, seat, reloading)}
     return kit.Drawing(figure, table, kit.caption(__name__, **words))
 
 
@@ -120,14 +121,9 @@ def _draw_stiffness(panel: kit.Panel, curve: xr.Dataset, style: dict[str, Any]) 
     axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
 
 
-def _words(
-    subject: Subject, seat: float, reloading: xr.Dataset, total: xr.DataArray
-) -> dict[str, Any]:
+def _words(subject: Subject, seat: float, reloading: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     curve, budget = subject.states("closure"), subject["error_budget"]
-    stiffness = curve["reference_stiffness"]
-    errors = total.where(np.isfinite(stiffness), drop=True)
-    determined = stiffness[np.isfinite(stiffness)]
     on_reload = reloading["reference_stiffness"].sel(branch="reload")
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
@@ -140,11 +136,17 @@ def _words(
         "largest": float(curve["seated_fit_max"]),
         **{name: Estimate.read(budget, name) for name in ("k_ni", "v_m", "chi")},
         "misfits": [float(curve[f"seated_{law}_misfit"]) for law in ("hyperbola", "logarithm")],
-        "reason": str(curve["seated_k_ni_reason"].item()),
+        "reason": str(budget["k_ni_reason"].item()),
         "stated": [
-            (compact(float(pressure)), compact(float(value), 3), compact(float(error), 2))
-            for pressure, value, error in zip(
-                determined["reference_pressure"], determined, errors, strict=True
-            )
+            (compact(number.at["pressure"]), _stiffness_words(number))
+            for number in read(row_of("tangent_stiffness"), subject)
+            if not number.missing
         ],
     }
+
+
+def _stiffness_words(number: Number) -> str:
+    """Stiffness with its error, as the page of the specimen has it."""
+    if not number.determined:
+        return UNDETERMINED
+    return f"{compact(number.value, 3)} ± {compact(number.error, 2)} MPa/mm"

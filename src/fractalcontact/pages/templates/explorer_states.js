@@ -91,7 +91,8 @@ class States {
   undetermined(key, place) {
     if (this.at(`undetermined/${key}`, place) === 1) return "interval";
     const says = (rows, mask) => this.raw[rows].includes(key) && this.at(`undetermined/${mask}`, place) === 1;
-    return says("of_joint", "by_scan") || says("of_touch", "at_touch") ? "scan" : "";
+    if (says("of_joint", "by_scan") || says("of_touch", "at_touch")) return "scan";
+    return this.total(key, place) > this.raw.most[key] * Math.abs(this.at(key, place)) ? "interval" : "";
   }
   /** What `make` gives, made once. */
   async once(key, make) {
