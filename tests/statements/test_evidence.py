@@ -128,7 +128,7 @@ def add_sliding(rng, changes):
         "plateau_slope": (each, np.zeros((REALISATIONS, 4))),
         "plateau_change": (each, values["plateau_change"]),
         "plateau_trend": (each, np.asarray(values["plateau_trend"])),
-        "plateau_undecided": (each, np.full((REALISATIONS, 4), values["undecided"], object)),
+        "plateau_undecided": (each, np.full((REALISATIONS, 4), "", object) + values["undecided"]),
         "odd_slope": (("realisation", "axis"), np.zeros((REALISATIONS, 2))),
     }
 
@@ -146,6 +146,15 @@ def verdict(name, **changes):
 def found(name, **changes):
     joint = Joint({**stages(), "ensemble": made(**changes)}, SETTINGS)
     return rule_of(name)(joint)
+
+
+def test_a_minority_of_realisations_decides_nothing():
+    correlated = np.array([["the faces still correlate"] * 4] * REALISATIONS, object)
+    for decided, expected in ((5, UNDETERMINED), (6, FAILS)):
+        correlated[:decided] = ""
+        result = found("dilatancy_flattens", plateau_trend=NONE_LEVEL, undecided=correlated)
+        assert result.verdict == expected
+        assert f"none of {decided} realisations that slide far enough, of 12" in result.numbers
 
 
 def test_twins_of_a_scan_judge_nothing():

@@ -66,7 +66,7 @@ def dilatancy_flattens(joint: Joint, evidence: Evidence) -> Finding:
 
     One specimen is judged by the fraction of its directions that are level, realisations by the
     fraction of them that are level in all directions. The claim is undetermined while the faces
-    still correlate, as a plateau may yet follow.
+    still correlate, as a plateau may yet follow, or those of more than half of the realisations do.
     """
     return _of_plateaus(
         joint,
@@ -126,10 +126,13 @@ def _of_plateaus(
     if not decided:
         return Finding(UNDETERMINED, members[0].undecided, note)
     count = sum(met(member) for member in decided)
+    # Those few that lose their correlation soon are a selection.
+    few = 2 * len(decided) < len(members)
+    left = f" that slide far enough, of {len(members)}" if len(decided) < len(members) else ""
     return Finding(
-        share(count, len(decided)),
-        f"level in {asked} in {count or 'none'} of {len(decided)} realisations; this specimen: "
-        f"{own.words()}",
+        UNDETERMINED if few else share(count, len(decided)),
+        f"level in {asked} in {count or 'none'} of {len(decided)} realisations{left}; "
+        f"this specimen: {own.words()}",
         f"this specimen: {note}",
     )
 
