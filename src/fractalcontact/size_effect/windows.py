@@ -182,10 +182,7 @@ class _Solved(SubWindows):
             "mean_gap": 0.0 if flush else state.gap.mean(),
             "nodes": nodes,
             "largest_void": largest_void(state.in_contact, state.space.spacing),
-            "random_void": largest_void(
-                random_nodes(state.space.shape, nodes, np.arange(rows * columns), window),
-                state.space.spacing,
-            ),
+            "random_void": _random_void(state.space.shape, state.space.spacing, nodes),
             "interface_closure_error": 0.0 if flush else errors["closure_error"],
             "area_share_error": errors["area_error"] / area,
             "corrected_area_share_error": errors["area_corrected_error"] / area,
@@ -201,3 +198,11 @@ class _Solved(SubWindows):
             self.domains.append(state.in_contact)
         for name, value in numbers.items():
             self.values[name][window, step] = value
+
+
+def _random_void(shape: tuple[int, int], spacing: tuple[float, float], nodes: int) -> float:
+    """Largest void among as many random nodes, mm, whichever axis is called x."""
+    first, last = sorted(zip(shape, spacing, strict=True))
+    turned = first[0], last[0]
+    domain = random_nodes(turned, nodes, np.arange(np.prod(turned)), 0)
+    return largest_void(domain, (first[1], last[1]))
