@@ -320,10 +320,10 @@ def within_largest_angle(end, strength):
 
 
 def by_assumed_angle(value, strength, sign):
-    """Change of a strength by an assumed phi_b that is off by 5 degrees, MPa."""
+    """Change of a strength by an assumed phi_b that is off by 10 degrees, MPa."""
     pressure = strength["nominal_pressure"]
     angle = np.degrees(np.arctan(value / pressure))
-    return shear_strength(pressure, angle + sign * 5)[0] - value
+    return shear_strength(pressure, angle + sign * 10)[0] - value
 
 
 def test_the_peak_by_dilatancy_holds_other_windows_and_readings(twin):

@@ -61,7 +61,7 @@ class MaterialKeys(Section):
         Literal["measured", "assumed"], key("measured or assumed")
     ] = "assumed"
     """`measured` on flat faces of this rock, or `assumed`: the interval of a strength contains
-    factors of 0.87 to 1.13, or of 0.9 to 1.9 by Barton's law and 5 degrees by the other rules"""
+    factors of 0.87 to 1.13, or of 0.9 to 1.9 by Barton's law and 10 degrees by the other rules"""
     joint_wall_strength: Annotated[Pressure, key("a pressure with its unit, such as 80 MPa")] = (
         float("nan")
     )

@@ -16,10 +16,10 @@ from ...core.text import exact, short
 from ..entries import jrc_of_law, reference_of, row_at
 from .constants import TO_SI, Constants, head_of, in_words
 
-#: Rule for the shear stiffness, which no contact state has. Public code quotes the displacement of
-#: Barton, Bandis and Bakhtar (1985), L in m; neither that paper nor the one of 1990 was read.
+#: Rule for the shear stiffness, which no contact state has. One public program quotes the
+#: displacement of Barton and Bandis, L in m; their papers were not read.
 _SHEAR_RULE = (
-    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis 1990, "
+    "peak strength over the peak displacement L/500 (JRC/L)^0.33 of Barton and Bandis, "
     "as quoted, not read in the source"
 )
 
