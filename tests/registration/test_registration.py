@@ -452,7 +452,7 @@ def test_keys_for_two_faces_need_two_faces(tmp_path):
     path = save_cloud(tmp_path / "rock.npy", joint(motion())[0].values)
     options = {"unit": "mm", "spacing": 0.1}
     for key, value in (("registration", "none"), ("mirror_upper", "x")):
-        with pytest.raises(InputError, match=f"key '{key}' needs two faces"):
+        with pytest.raises(InputError, match=f"key '{key}' is for two faces"):
             read_faces(path, None, options | {key: value})
         with pytest.raises(InputError, match=f"{key}: 'z' is not right; expected"):
             read_faces(path, path, options | {key: "z"})

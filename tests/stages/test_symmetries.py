@@ -48,7 +48,7 @@ ABSOLUTE = {
         )
         for end in ("", "_low", "_high")
     ),
-    *("barton_slope_angle", "peak_over_barton"),
+    *("barton_slope_angle", "peak_over_barton", "barton_scaled_strength_reason"),
     *(f"{name}_{end}" for name in ("barton_strength", "barton_scaled_strength") for end in _ENDS),
     "value",
     "shifted_ratio",  # by 0.1 mm
@@ -63,6 +63,7 @@ ABSOLUTE = {
 SENTENCES = {
     "closure": {"seated_k_ni_reason", "no_common_seat"},
     "elastic_model": {"reason"},
+    "error_budget": {"k_ni_reason"},
     "joints": {"plateau_undecided"},
     "statements": {"claim", "short", "rule", "numbers", "note", "explanation"},
 }

@@ -34,7 +34,7 @@ FRICTION_FACTORS = {"measured": (0.87, 1.13), "assumed": (0.9, 1.9)}
 #: Largest error of a stiffness that is stated, as a fraction of it.
 LARGEST_STIFFNESS_ERROR = 0.5
 
-#: Half-width of an assumed phi_b, degrees, in the rules that no such tests were compared with: basic
+#: Half-width of an assumed phi_b, degrees, in rules that no such tests were compared with: basic
 #: friction angles are 20 to 27 degrees in schist and shale, 27 to 34 in sandstone and gneiss, 34 to
 #: 40 in granite and limestone (TRB 1990, table 9.15 of Look's handbook of geotechnical tables).
 ASSUMED_ANGLE_ERROR = 10.0

@@ -76,8 +76,7 @@ def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
 
 #: Reason why no stretch of offsets is judged.
 _NO_STRETCH = (
-    f"no three offsets from v to {compact(MIN_SPREAD, 6)} v that begin beyond the correlation "
-    "length while the faces correlate"
+    f"no three offsets from v to {compact(MIN_SPREAD, 6)} v begin where faces correlate in part"
 )
 
 
@@ -135,7 +134,7 @@ def _rises_again(joint: Joint, evidence: Evidence, force: float) -> Finding:
         note = f"before, {plateau.numbers}, {plateau.note}; {later}"
         findings.append(Finding(verdict, f"{before} compliance changes by {percent} %", note))
     order = (HOLDS, PARTLY, UNDETERMINED, FAILS)
-    nothing = Finding(UNDETERMINED, f"{_NO_STRETCH}, or no later offset without correlation")
+    nothing = Finding(UNDETERMINED, "no plateau was looked for, or no offset without correlation")
     return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)
 
 

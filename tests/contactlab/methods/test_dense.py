@@ -125,7 +125,7 @@ def test_unfinished_pivoting_is_an_error(monkeypatch):
 
 def test_same_arguments_are_refused_as_by_the_production_solver():
     space = HalfSpace((4, 4), (1.0, 1.0), 1.0)
-    with pytest.raises(ValueError, match="either closure= or force="):
+    with pytest.raises(ValueError, match="exactly one of closure=, force="):
         ELIMINATION(np.zeros((4, 4)), space)
     with pytest.raises(ValueError, match="missing"):
         ELIMINATION(np.full((4, 4), np.nan), space, closure=1.0)

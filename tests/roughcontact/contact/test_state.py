@@ -41,7 +41,7 @@ def test_a_mean_pressure_that_is_none_is_refused_by_its_name(value):
 @pytest.mark.parametrize("other", [{"force": 1.0}, {"closure": 1e-3}])
 def test_two_loads_are_refused(other):
     space = HalfSpace((48, 48), 0.1, 2e4)
-    with pytest.raises(ValueError, match="give one of closure=, force= and mean_pressure="):
+    with pytest.raises(ValueError, match="give exactly one of closure=, force= and mean_pressure="):
         solve_contact(rough(), space, mean_pressure=1.0, **other)
 
 
