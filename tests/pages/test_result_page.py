@@ -242,6 +242,14 @@ def test_no_page_and_no_table_shows_markup_of_docstrings(results, pages):
         assert not MARKUP.search(inspect.getdoc(rule_of(name))), name
 
 
+@pytest.mark.parametrize(
+    ("place", "words"),
+    [("7", "Fig. 7"), ("4, 5", "Figs. 4, 5"), ("sect. 3", "sect. 3"), ("eq. 2", "eq. 2")],
+)
+def test_the_place_of_a_claim_in_the_paper_is_in_words(place, words):
+    assert result_page._in_paper(place) == words
+
+
 def test_every_statement_leads_to_a_figure_that_its_specimen_has(atlas):
     for specimen, drawn in (("pair", figures_of("match")), ("flat.1", figures_of("flat"))):
         shown = {row.name: row.cells[specimen].figure for row in matrix_of(atlas, [specimen])}

@@ -201,8 +201,8 @@ def _columns() -> dict[str, list[Row]]:
 
 
 def _in_paper(figures):
-    """Place of a statement in the paper: "Figs. 4, 5" or "sect. 7"."""
-    if figures.startswith("sect"):
+    """Place of a statement in the paper: "Figs. 4, 5", "sect. 7" or "eq. 2"."""
+    if figures.startswith(("sect", "eq")):
         return figures
     return f"Figs. {figures}" if len(re.findall(r"\d+", figures)) > 1 else f"Fig. {figures}"
 
