@@ -100,6 +100,26 @@ def test_no_fit_is_said_and_no_line_drawn(atlas):
     assert "No fit of eq. 2" in drawing.caption
 
 
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.79, 0.79), "3 - Delta_g = 0.79, known of this synthetic surface"),
+        ((0.7, 0.9), ", by the power spectrum"),
+    ],
+)
+def test_an_exponent_known_by_construction_has_no_error(atlas, ends, words):
+    def expecting(laws):
+        parts = zip(("", "_low", "_high"), (0.79, *ends), strict=True)
+        known = {
+            f"expected_hurst{part}": laws[f"expected_hurst{part}"] * 0 + x for part, x in parts
+        }
+        return laws.assign(known | {"face_hurst": 0.8})
+
+    drawing = drawn(changed(atlas, "windows/sliding", expecting), "sliding", "window_size")
+    assert words in " ".join(drawing.caption.split())
+    assert "not known" not in drawing.caption
+
+
 def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atlas):
     strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
     table, _ = computed_and_read(drawn(atlas, "sliding", "strength").data)

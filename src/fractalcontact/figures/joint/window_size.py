@@ -77,7 +77,7 @@ def _draw_roughness(panel: kit.Panel, laws: xr.Dataset, *, slides: bool) -> None
         panel.curve(laws, "scale_side", name, **style)
     expected = Estimate.read(laws, "expected_hurst", scale=EXPONENT)
     if expected.known and fitted.any():
-        label = rf"eq. 2: $H = 3-\Delta_g$ = {expected.text()}"
+        label = rf"eq. 2: $H = 3-\Delta_g$ = {_in_words(expected)}"
         axes.plot(b[fitted], laws["face_sigma_z_expected"][fitted], "k--", label=label)
     kit.size_axis(axes, b, "sub-windows")
     if (laws["face_sigma_z"] > 0).any():
@@ -107,6 +107,12 @@ def _draw_contact(panel: kit.Panel, laws: xr.Dataset) -> None:
     axes.set_ylabel(label)
 
 
+def _in_words(expected: Estimate) -> str:
+    """Exponent that eq. 2 expects; that of a synthetic surface is known without an error."""
+    exact = expected.low == expected.high
+    return number(float(expected.value)) if exact else expected.text()
+
+
 def _words(atlas: DataTree, name: str, laws: xr.Dataset, surface: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: H of sigma_z, that of eq. 2, the claim on larger samples."""
     of_windows = surface.sel(estimator=str(surface["recommended"].item()))
@@ -114,9 +120,11 @@ def _words(atlas: DataTree, name: str, laws: xr.Dataset, surface: xr.Dataset) ->
     force = float(atlas[f"statements/{name}"].attrs["force"])
     judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
     fitted = laws["compliance_exponent"].notnull().any()
+    expected = Estimate.read(laws, "expected_hurst", scale=EXPONENT)
     return {
         "hurst": hurst if laws["face_hurst"].notnull() else Estimate(),
-        "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
+        "expected": _in_words(expected) if expected.known else "",
+        "is_exact": bool(expected.low == expected.high),
         "claim": kit.claim(
             atlas, name, _CLAIM, why=f"at {pressure_label(float(judged))}" if fitted else ""
         ),
