@@ -134,7 +134,9 @@ def _rises_again(joint: Joint, evidence: Evidence, force: float) -> Finding:
         note = f"before, {plateau.numbers}, {plateau.note}; {later}"
         findings.append(Finding(verdict, f"{before} compliance changes by {percent} %", note))
     order = (HOLDS, PARTLY, UNDETERMINED, FAILS)
-    nothing = Finding(UNDETERMINED, "no plateau was looked for, or no offset without correlation")
+    nothing = Finding(
+        UNDETERMINED, "no three offsets for a plateau, or none without correlation later"
+    )
     return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)
 
 
